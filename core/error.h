@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The calling thread's last error, and allocation that can fail on demand. */
+#ifndef PNB_ERROR_H
+#define PNB_ERROR_H
+
+#include "penumbra.h"
+
+#define PNB_PRINTF(format, arguments) __attribute__((format(printf, format, arguments)))
+
+/* Longest error or log message, with its terminator. */
+#define ERROR_TEXT_SIZE 1024
+
+/* Records why a call fails and returns `result`, so that a function can `return error_set(...)`. */
+pnb_result error_set(pnb_result result, const char *format, ...) PNB_PRINTF(2, 3);
+
+/* pnb_result of a NULL or wrongly sized structure, naming it; PNB_OK if it is good. */
+pnb_result error_check_struct(const char *name, const void *structure, size_t size);
+#define CHECK_STRUCT(pointer, type) error_check_struct(#type, pointer, sizeof(type))
+
+#endif

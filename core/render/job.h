@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * One render: what the host asked for, how far it is, what came out. Made by a host thread, worked on by the
+ * context's OpenGL thread, read by host threads. */
+#ifndef PNB_JOB_H
+#define PNB_JOB_H
+
+#include "../messages.h"
+#include "../scene/scene.h"
+#include "settings.h"
+
+#include <stdatomic.h>
+#include <stdbool.h>
+
+enum job_state { JOB_QUEUED, JOB_RUNNING, JOB_DONE };
+
+struct job_image {
+    char *name;
+    uint32_t channels;
+    float *pixels;
+};
+
+struct job_timing {
+    char name[64];
+    uint32_t count;
+    double gpu_ms, cpu_ms;
+    uint64_t bytes;
+};
+
+struct pnb_job {
+    /* Set before the job is queued, constant afterwards. */
+    struct scene *scene;
+    struct settings settings;
+    struct messages messages;
+
+    /* Guarded by `lock`; `changed` is signalled when state or progress changes. */
+    pthread_mutex_t lock;
+    pthread_cond_t changed;
+    enum job_state state;
+    pnb_result result;
+    char error[ERROR_TEXT_SIZE];
+    pnb_progress progress;
+
+    atomic_bool cancelled;
+
+    /* Written by the OpenGL thread while RUNNING, readable when DONE. */
+    struct job_image *images;
+    uint32_t image_count;
+    struct job_timing *timings;
+    uint32_t timing_count;
+
+    pnb_context *context; /* queue bookkeeping of context.c */
+    struct pnb_job *next;
+    uint32_t references;  /* the host's handle and the queue's */
+};
+
+/* For the renderer, on the OpenGL thread. */
+static inline bool job_is_cancelled(struct pnb_job *job) {
+    return atomic_load_explicit(&job->cancelled, memory_order_relaxed);
+}
+/* fraction 0..1; text is copied. */
+void job_set_progress(struct pnb_job *job, float fraction, uint32_t sample, const char *text);
+/* Adds an image of the settings' crop size and returns its pixels, or NULL (out of memory, error set). */
+float *job_add_image(struct pnb_job *job, const char *name, uint32_t channels);
+/* Adds to the timing of that name. */
+pnb_result job_add_timing(struct pnb_job *job, const char *name, double gpu_ms, double cpu_ms, uint64_t bytes);
+
+#endif

@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Checked, immutable copies of host data. Nothing here knows OpenGL. */
+#ifndef PNB_SCENE_H
+#define PNB_SCENE_H
+
+#include "../messages.h"
+
+#include <stdatomic.h>
+#include <stdbool.h>
+
+/* 128-bit hash of content: equal hashes are taken for equal data. */
+struct content_key {
+    uint64_t words[2];
+};
+
+/* One welded vertex, as OpenGL reads it: 24 bytes. */
+struct vertex {
+    float position[3];
+    int16_t normal[2]; /* octahedral, signed normalised; unit length after decoding */
+    float uv[2];
+};
+
+/* Consecutive triangles of one material slot. */
+struct mesh_range {
+    uint32_t slot;
+    uint32_t first_index, index_count;
+};
+
+struct pnb_mesh {
+    atomic_uint references;
+    char *name;
+    char *warning;              /* "" if the data was good */
+    struct content_key content; /* of vertices, indices and ranges */
+    struct vertex *vertices;
+    uint32_t *indices;          /* three per triangle, sorted by slot */
+    struct mesh_range *ranges;
+    uint32_t vertex_count, index_count, range_count;
+    float bounds[2][3];         /* minimum, maximum of the used positions; min > max if there are none */
+};
+
+struct pnb_texture {
+    atomic_uint references;
+    char *name;
+    struct content_key content;
+    uint32_t width, height;
+    float *rgba;                /* linear, 4 per texel, finite, rows bottom-up; colour <= 65504 (half floats) */
+};
+
+pnb_mesh *mesh_retain(pnb_mesh *mesh);
+pnb_texture *texture_retain(pnb_texture *texture);
+
+struct scene_instance {
+    pnb_mesh *mesh;             /* retained */
+    char *name;
+    uint32_t flags;
+    uint32_t first_slot, slot_count; /* into scene.slots, checked */
+    float matrix[16];
+};
+
+struct scene_material {
+    float base_color[3], alpha;
+    pnb_texture *base_color_texture, *alpha_texture; /* retained, or NULL */
+};
+
+/* pnb_light with every default filled in, degenerate sizes clamped, and finite numbers. */
+struct scene_light {
+    char *name;
+    pnb_light_type type;
+    pnb_area_shape shape;
+    uint32_t flags;
+    float matrix[16];
+    float emission[3];
+    float size[2], radius, angle, spot_angle, spot_blend;
+};
+
+struct scene_camera {
+    pnb_projection projection;
+    float matrix[16];           /* orthonormal axes */
+    float window[4];
+    float clip_start, clip_end;
+};
+
+struct scene {
+    struct scene_instance *instances;
+    struct scene_material *materials; /* one more than the host's: materials[material_count - 1] is the default */
+    uint32_t *slots;                  /* checked indices into materials */
+    struct scene_light *lights;
+    uint32_t instance_count, material_count, slot_count, light_count;
+    struct scene_camera camera;
+    float world_color[3];
+};
+
+/* Copies and checks. What cannot be used is dropped or clamped with a message that names it; only broken
+ * structures (wrong struct_size, NULL meshes or arrays, more than MAX_LIGHTS lights) are errors. */
+#define MAX_LIGHTS 64
+pnb_result scene_create(const pnb_scene *from, struct messages *messages, struct scene **scene);
+void scene_destroy(struct scene **scene);
+
+#endif
