@@ -32,13 +32,14 @@ struct pnb_job {
     struct settings settings;
     struct messages messages;
 
-    /* Guarded by `lock`; `changed` is signalled when state or progress changes. */
+    /* Guarded by `lock`; `finished` is signalled when state becomes DONE. */
     pthread_mutex_t lock;
-    pthread_cond_t changed;
+    pthread_cond_t finished;
     enum job_state state;
     pnb_result result;
     char error[ERROR_TEXT_SIZE];
     pnb_progress progress;
+    uint32_t references;  /* the host's handle and the queue's */
 
     atomic_bool cancelled;
 
@@ -48,9 +49,7 @@ struct pnb_job {
     struct job_timing *timings;
     uint32_t timing_count;
 
-    pnb_context *context; /* queue bookkeeping of context.c */
-    struct pnb_job *next;
-    uint32_t references;  /* the host's handle and the queue's */
+    struct pnb_job *next; /* in the context's queue, guarded by its lock */
 };
 
 /* For the renderer, on the OpenGL thread. */
@@ -61,7 +60,14 @@ static inline bool job_is_cancelled(struct pnb_job *job) {
 void job_set_progress(struct pnb_job *job, float fraction, uint32_t sample, const char *text);
 /* Adds an image of the settings' crop size and returns its pixels, or NULL (out of memory, error set). */
 float *job_add_image(struct pnb_job *job, const char *name, uint32_t channels);
-/* Adds to the timing of that name. */
+/* Adds to the times of that name; bytes are what the pass owns, so the largest counts. */
 pnb_result job_add_timing(struct pnb_job *job, const char *name, double gpu_ms, double cpu_ms, uint64_t bytes);
+
+/* For the context. A job that is cancelled while queued is DONE at once; job_begin is then false. */
+bool job_begin(struct pnb_job *job);
+/* Ends a running job with the thread's last error, or CANCELLED if that was asked for. */
+void job_finish(struct pnb_job *job, pnb_result result);
+/* Gives back one reference. */
+void job_release(struct pnb_job *job);
 
 #endif
