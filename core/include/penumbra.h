@@ -211,7 +211,8 @@ typedef enum pnb_light_type { PNB_LIGHT_AREA = 0, PNB_LIGHT_POINT = 1, PNB_LIGHT
 typedef enum pnb_area_shape { PNB_AREA_RECTANGLE = 0, PNB_AREA_ELLIPSE = 1 } pnb_area_shape;
 
 enum pnb_light_flags {
-    PNB_LIGHT_NO_SHADOW = 1 /* lights, but nothing shadows it */
+    PNB_LIGHT_NO_SHADOW = 1,  /* lights, but nothing shadows it */
+    PNB_LIGHT_COSINE_SPOT = 2 /* SPOT: the intensity also falls with the cosine to the axis, as from a flat disk */
 };
 
 typedef struct pnb_light {
