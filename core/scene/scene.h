@@ -43,7 +43,8 @@ struct pnb_texture {
     char *name;
     struct content_key content;
     uint32_t width, height;
-    float *rgba;                /* linear, 4 per texel, finite, rows bottom-up; colour <= 65504 (half floats) */
+    bool has_alpha;             /* without it alpha is 1, and as an alpha texture its grey counts */
+    float *rgba;                /* linear, 4 per texel, rows bottom-up; colour 0..65504 (half floats), alpha 0..1 */
 };
 
 pnb_mesh *mesh_retain(pnb_mesh *mesh);
@@ -53,7 +54,7 @@ struct scene_instance {
     pnb_mesh *mesh;             /* retained */
     char *name;
     uint32_t flags;
-    uint32_t first_slot, slot_count; /* into scene.slots, checked */
+    uint32_t first_slot, slot_count; /* into scene.slots, checked; at least one */
     float matrix[16];
 };
 
@@ -62,9 +63,13 @@ struct scene_material {
     pnb_texture *base_color_texture, *alpha_texture; /* retained, or NULL */
 };
 
-/* pnb_light with every default filled in, degenerate sizes clamped, and finite numbers. */
+/* pnb_light with every default filled in, degenerate sizes clamped, and finite numbers; members that do not belong
+ * to its type are 0. The axes are linearly independent. An AREA is at least SCENE_MIN_EMITTER wide and high in the
+ * world; angle is at most SCENE_MAX_SUN_ANGLE, spot_angle in (0, pi]. */
+#define SCENE_MIN_EMITTER   1e-4f  /* metres */
+#define SCENE_MAX_SUN_ANGLE 3.124f /* 179 degrees: the tangent of half of it is finite */
 struct scene_light {
-    char *name;
+    char *name;                 /* unique within the scene */
     pnb_light_type type;
     pnb_area_shape shape;
     uint32_t flags;
@@ -77,13 +82,14 @@ struct scene_camera {
     pnb_projection projection;
     float matrix[16];           /* orthonormal axes */
     float window[4];
+    bool window_is_default;     /* the host gave none: the window is square until scene_camera_fit */
     float clip_start, clip_end;
 };
 
 struct scene {
     struct scene_instance *instances;
     struct scene_material *materials; /* one more than the host's: materials[material_count - 1] is the default */
-    uint32_t *slots;                  /* checked indices into materials */
+    uint32_t *slots;                  /* checked indices into materials; one more than the host's: the default */
     struct scene_light *lights;
     uint32_t instance_count, material_count, slot_count, light_count;
     struct scene_camera camera;
@@ -95,5 +101,7 @@ struct scene {
 #define MAX_LIGHTS 64
 pnb_result scene_create(const pnb_scene *from, struct messages *messages, struct scene **scene);
 void scene_destroy(struct scene **scene);
+/* Gives a default window the aspect of an image of so many pixels, which are square. */
+void scene_camera_fit(struct scene_camera *camera, uint32_t width, uint32_t height);
 
 #endif
