@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Soft shadows in real time, with or without a GPU."""
+
+import bpy
+
+from . import capi, device, engine, props, textures, ui
+
+bl_info = {
+    "name": "Penumbra",
+    "author": "The Penumbra authors",
+    "description": "Render engine for soft shadow mapping, with or without a GPU",
+    "blender": (3, 4, 0),
+    "version": (0, 0, 0),  # set by the build
+    "location": "Properties > Render > Render Engine > Penumbra",
+    "category": "Render",
+}
+
+_CLASSES = (engine.PenumbraEngine, engine.PENUMBRA_OT_capture)
+
+
+@bpy.app.handlers.persistent
+def _forget_textures(*_args):
+    textures.cache.clear()
+
+
+def _menu(self, _context):
+    self.layout.operator(engine.PENUMBRA_OT_capture.bl_idname, text="Penumbra Capture (.pnb)")
+
+
+def register():
+    capi.library()  # before anything is registered: nothing remains if it cannot be loaded
+    props.register()
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+    ui.register()
+    bpy.types.TOPBAR_MT_file_export.append(_menu)
+    bpy.app.handlers.render_init.append(_forget_textures)
+
+
+def unregister():
+    bpy.app.handlers.render_init.remove(_forget_textures)
+    bpy.types.TOPBAR_MT_file_export.remove(_menu)
+    ui.unregister()
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)
+    props.unregister()
+    textures.cache.clear()
+    device.close()

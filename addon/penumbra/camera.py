@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Camera object -> pnb_camera."""
+
+from . import capi
+from .lights import column_major
+
+
+def fill_camera(target, ob, matrix, shift_x, width, height, aspect, warnings):
+    """`aspect`: height over width of a pixel; `shift_x`: the camera's, with the eye's shift in stereo."""
+    camera = ob.data
+    target.matrix[:] = column_major(matrix)
+    orthographic = camera.type == 'ORTHO'
+    if camera.type not in {'ORTHO', 'PERSP'}:
+        warnings.append(f"camera '{ob.name}': {camera.type.lower()} is not supported, it is rendered in perspective")
+    target.projection = capi.ORTHOGRAPHIC if orthographic else capi.PERSPECTIVE
+    target.window[:] = _window(camera, orthographic, shift_x, width, height * aspect)
+    target.clip_start = camera.clip_start
+    target.clip_end = camera.clip_end
+
+
+def _window(camera, orthographic, shift_x, width, height):
+    """Left, right, bottom, top: what Blender calls the view plane, at distance 1 in perspective."""
+    fit = camera.sensor_fit
+    if fit == 'AUTO':
+        fit = 'HORIZONTAL' if width >= height else 'VERTICAL'
+    side = width if fit == 'HORIZONTAL' else height
+    if orthographic:
+        extent = camera.ortho_scale
+    else:
+        sensor = camera.sensor_height if camera.sensor_fit == 'VERTICAL' else camera.sensor_width
+        extent = sensor / camera.lens
+    half_x, half_y = 0.5 * width / side, 0.5 * height / side
+    return [extent * bound for bound in (shift_x - half_x, shift_x + half_x,
+                                         camera.shift_y - half_y, camera.shift_y + half_y)]

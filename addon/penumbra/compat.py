@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Everything that differs between Blender 3.4, 4.3 and 5.2. No other file asks for a version."""
+
+import bpy
+from math import pi
+from typing import NamedTuple
+
+BLENDER_4 = bpy.app.version >= (4, 0)
+
+# Cycles spreads an area light's power over a quarter of the sphere before 4.0, over a Lambertian lobe since.
+AREA_RADIANCE_PER_POWER = 1.0 / pi if BLENDER_4 else 1.0 / 4.0
+# Before 4.0 a spot is a flat disk across its axis, which emits by the cosine, and the object's scale does nothing.
+SPOT_IS_FLAT_DISK = not BLENDER_4
+SPOT_IS_SCALED = BLENDER_4
+
+# Metaballs come as instances of meshes since 3.6.
+GEOMETRY_TYPES = {'MESH', 'CURVE', 'SURFACE', 'FONT'} | (set() if bpy.app.version >= (3, 6) else {'META'})
+
+# Panels of other engines that fit this one too.
+ADOPTED_PANELS = ('EEVEE_MATERIAL_PT_context_material', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface')
+
+
+class MeshArray(NamedTuple):
+    """Where a member of pnb_mesh_desc is found: as RNA property, and in memory if that can be reached."""
+    member: str         # of pnb_mesh_desc
+    typecode: str       # of the array module: 'f', 'I' or 'i'
+    width: int          # numbers per element
+    rna: object         # collection that has `attribute` on its elements
+    attribute: str
+    memory: object      # collection whose elements' addresses lead to the data, or None
+    offset: int = 0     # bytes from an element's address to the data
+
+
+def prepare_mesh(mesh):
+    """Makes triangles and corner normals available."""
+    mesh.calc_loop_triangles()
+    if not hasattr(mesh, 'corner_normals'):
+        mesh.calc_normals_split()
+
+
+def release_mesh(mesh):
+    if not hasattr(mesh, 'corner_normals'):
+        mesh.free_normals_split()
+
+
+def mesh_arrays(mesh):
+    """The arrays of a prepared mesh. They are valid as long as the evaluated mesh is."""
+    triangles = mesh.loop_triangles
+    yield MeshArray('positions', 'f', 3, mesh.vertices, 'co', mesh.vertices)
+    yield MeshArray('corner_vertices', 'I', 1, mesh.loops, 'vertex_index', mesh.loops)
+    if hasattr(mesh, 'corner_normals'):
+        yield MeshArray('corner_normals', 'f', 3, mesh.corner_normals, 'vector', mesh.corner_normals)
+    else:
+        yield MeshArray('corner_normals', 'f', 3, mesh.loops, 'normal', None)
+    layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+    if layer and hasattr(layer, 'uv'):
+        yield MeshArray('corner_uvs', 'f', 2, layer.uv, 'vector', layer.uv)
+    elif layer:
+        yield MeshArray('corner_uvs', 'f', 2, layer.data, 'uv', layer.data)
+    yield MeshArray('triangles', 'I', 3, triangles, 'loops', triangles)
+    if hasattr(mesh, 'loop_triangle_polygons'):
+        polygons = mesh.loop_triangle_polygons
+        yield MeshArray('triangle_polygons', 'I', 1, polygons, 'value', polygons)
+    else:
+        yield MeshArray('triangle_polygons', 'I', 1, triangles, 'polygon_index', triangles, 12)
+    slots = mesh.attributes.get('material_index')
+    if slots and slots.domain == 'FACE' and slots.data_type == 'INT':
+        yield MeshArray('polygon_materials', 'i', 1, slots.data, 'value', slots.data)
+
+
+def light_casts_shadow(light):
+    """Blender 3.4 has one switch per engine: either one turns the shadow off."""
+    cycles = getattr(light, 'cycles', None)
+    return light.use_shadow and getattr(cycles, 'cast_shadow', True)
+
+
+def light_color(light):
+    """Linear colour that the energy is multiplied with."""
+    color = list(light.color)
+    if getattr(light, 'use_temperature', False):
+        color = [a * b for a, b in zip(color, light.temperature_color)]
+    gain = 2.0 ** getattr(light, 'exposure', 0.0)
+    return [channel * gain for channel in color]
+
+
+def light_is_normalized(light):
+    """Whether the energy is the power of the whole light instead of its power per area."""
+    return getattr(light, 'normalize', True)
+
+
+def uses_nodes(owner):
+    """Materials, worlds and lights: `use_nodes` is deprecated in 5.x, where it is always on."""
+    return bool(owner.node_tree) and getattr(owner, 'use_nodes', True)
+
+
+def view_layer_overrides(view_layer):
+    """(material, world) that replace all others, or None."""
+    return view_layer.material_override, getattr(view_layer, 'world_override', None)

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine: stills and animations."""
+
+import os
+import re
+import sys
+import traceback
+from ctypes import byref, c_float, c_void_p
+
+import bpy
+
+from . import capi, device, export, passes, props
+
+# How long a wait for the library may delay a cancel, in milliseconds.
+POLL_MS = 20
+# Warnings shown in Blender; a scene with many faults would flood its log.
+MAX_WARNINGS = 20
+
+
+class RenderFailed(Exception):
+    """A failure with a message for the user."""
+
+
+class CaptureRequest:
+    """Set by the capture operator: the next render writes a capture instead of rendering."""
+    path = None
+
+
+class PenumbraEngine(bpy.types.RenderEngine):
+    bl_idname = 'PENUMBRA'
+    bl_label = "Penumbra"
+    bl_use_preview = False
+    bl_use_postprocess = True
+    bl_use_eevee_viewport = True
+    bl_use_shading_nodes_custom = False
+
+    def __init__(self, *args, **kwargs):
+        super().__init__(*args, **kwargs)
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        try:
+            for item in passes.list_passes(renderlayer):
+                self.register_pass(scene, renderlayer, item.name, len(item.channels), item.channels, item.kind)
+        except Exception as error:
+            self._fail(error)
+
+    def render(self, depsgraph):
+        # An exception that leaves this method would end in a black file and exit code 0, or in a crash.
+        try:
+            self._render(depsgraph)
+        except Exception as error:
+            self._fail(error)
+
+    def _fail(self, error):
+        message = str(error)
+        if not isinstance(error, (RenderFailed, capi.Error)):
+            traceback.print_exc()
+            message = f"Unexpected {type(error).__name__}: {error}"
+        # The report makes `blender -b` exit with an error and write no file, error_set shows in the image editor.
+        self.report({'ERROR'}, message)
+        self.error_set(message)
+
+    def _render(self, depsgraph):
+        scene = depsgraph.scene_eval
+        if scene.camera is None:
+            raise RenderFailed(f"Scene '{scene.name}' has no camera")
+        self.update_stats("", "Exporting")
+        with export.SceneExport(depsgraph) as exported:
+            views = [view.name for view in scene.render.views if view.use] if scene.render.use_multiview else [""]
+            for view in views:
+                if not self._render_view(depsgraph, exported, view):
+                    return
+        for warning in list(dict.fromkeys(exported.warnings))[:MAX_WARNINGS]:
+            self.report({'WARNING'}, warning)
+
+    def _render_view(self, depsgraph, exported, view):
+        """False if it was cancelled."""
+        scene = depsgraph.scene_eval
+        width, height = self.resolution_x, self.resolution_y
+        if view:
+            self.active_view_set(view)
+        render = scene.render
+        camera = scene.camera
+        exported.set_camera(camera, self.camera_model_matrix(camera), self.camera_shift_x(camera), width, height,
+                            render.pixel_aspect_y / render.pixel_aspect_x)
+        settings = make_settings(depsgraph, width, height)
+        path = CaptureRequest.path or capture_path(depsgraph)
+        if path:
+            export.write_capture(path, exported.scene, settings)
+        if CaptureRequest.path:
+            return False
+        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name, view=view)
+        done = False
+        try:
+            settings.crop[2:] = result.resolution_x, result.resolution_y
+            job = c_void_p()
+            capi.library().render_start(_context(), byref(exported.scene), byref(settings), byref(job))
+            try:
+                done = self._wait(job, exported.warnings)
+                if done:
+                    passes.fill_layer(result.layers[0], depsgraph.view_layer_eval, job, *settings.crop[2:])
+            finally:
+                capi.library().destroy('job', job)
+        finally:
+            self.end_result(result, cancel=not done)
+        return done
+
+    def _wait(self, job, warnings):
+        """Shows progress until the job ends; False if the user cancelled it."""
+        library = capi.library()
+        progress = capi.Progress()
+        try:
+            while library.job_wait(job, POLL_MS, byref(progress)) == capi.TIMEOUT:
+                self.update_progress(progress.fraction)
+                self.update_stats("", progress.text.decode(errors='replace'))
+                if self.test_break():
+                    library.job_cancel(job)
+        except capi.Error as error:
+            if error.result == capi.CANCELLED:
+                return False
+            if error.result == capi.CONTEXT_LOST:
+                device.close()
+            raise
+        self.update_progress(1.0)
+        warnings.extend(library.job_message(job, index).decode(errors='replace')
+                        for index in range(library.job_message_count(job)))
+        return True
+
+
+def _context():
+    return device.context(props.backend())
+
+
+def make_settings(depsgraph, width, height):
+    """pnb_settings of the scene for an image of this full size."""
+    scene = depsgraph.scene_eval
+    options = scene.penumbra
+    values = props.parameter_values(options)
+    settings = capi.Settings(
+        technique=options.technique.encode(), width=width, height=height, samples=options.samples,
+        filter_width=scene.render.filter_size, shadow_map_size=options.shadow_map_size,
+        light_samples=options.light_samples, passes=passes.wanted(depsgraph.view_layer_eval),
+        flags=capi.SETTINGS_FILM_TRANSPARENT if scene.render.film_transparent else 0)
+    settings.values = (capi.Value * len(values))(*[capi.Value(name.encode(), value) for name, value in values])
+    settings.value_count = len(values)
+    settings.crop[:] = crop(scene.render, width, height)
+    return settings
+
+
+def crop(render, width, height):
+    """x, y, width, height of the border in pixels: Blender multiplies in single precision and cuts."""
+    if not render.use_border:
+        return [0, 0, width, height]
+    left, right = (_pixels(bound, width) for bound in (render.border_min_x, render.border_max_x))
+    bottom, top = (_pixels(bound, height) for bound in (render.border_min_y, render.border_max_y))
+    return [left, bottom, right - left, top - bottom]
+
+
+def _pixels(fraction, size):
+    return int(c_float(fraction * size).value)
+
+
+def capture_path(depsgraph):
+    """Path given by `-- --penumbra-capture PATH` or PENUMBRA_CAPTURE, with `#` as frame number; None without."""
+    arguments = sys.argv[sys.argv.index('--') + 1:] if '--' in sys.argv else []
+    path = os.environ.get('PENUMBRA_CAPTURE')
+    if '--penumbra-capture' in arguments[:-1]:
+        path = arguments[arguments.index('--penumbra-capture') + 1]
+    if not path:
+        return None
+    scene = depsgraph.scene
+    path = re.sub('#+', lambda match: str(scene.frame_current).zfill(len(match.group())), path)
+    if scene.render.use_single_layer or len(scene.view_layers) == 1:
+        return path
+    root, extension = os.path.splitext(path)
+    return f"{root}.{depsgraph.view_layer.name}{extension}"
+
+
+class PENUMBRA_OT_capture(bpy.types.Operator):
+    """Write the current frame's scene as the library sees it, for the penumbra command-line tool"""
+    bl_idname = 'penumbra.capture'
+    bl_label = "Write Penumbra Capture"
+
+    filepath: bpy.props.StringProperty(subtype='FILE_PATH')
+    filter_glob: bpy.props.StringProperty(default='*.pnb', options={'HIDDEN'})
+
+    def invoke(self, context, _event):
+        self.filepath = self.filepath or os.path.splitext(bpy.data.filepath)[0] + '.pnb'
+        context.window_manager.fileselect_add(self)
+        return {'RUNNING_MODAL'}
+
+    def execute(self, context):
+        scene = context.scene
+        before = scene.render.engine
+        path = bpy.path.abspath(self.filepath)
+        CaptureRequest.path = path
+        try:
+            scene.render.engine = 'PENUMBRA'
+            bpy.ops.render.render()
+        except RuntimeError as error:
+            self.report({'ERROR'}, str(error))
+            return {'CANCELLED'}
+        finally:
+            CaptureRequest.path = None
+            scene.render.engine = before
+        self.report({'INFO'}, f"Wrote {path}")
+        return {'FINISHED'}

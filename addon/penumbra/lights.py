@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light object -> pnb_light, with the radiometry of Cycles of the running Blender version."""
+
+from math import pi
+
+from . import capi, compat, nodes
+
+_TYPES = {'AREA': capi.AREA, 'POINT': capi.POINT, 'SPOT': capi.SPOT, 'SUN': capi.SUN}
+
+
+def fill_light(target, ob, matrix, warnings):
+    """Writes the light of an evaluated object into `target`, a capi.Light."""
+    light = ob.data
+    target.name = ob.name.encode()
+    target.type = _TYPES[light.type]
+    target.flags = 0 if compat.light_casts_shadow(light) else capi.LIGHT_NO_SHADOW
+    scaled = light.type != 'SPOT' or compat.SPOT_IS_SCALED
+    target.matrix[:] = column_major(matrix if scaled else matrix.normalized())
+    color = _color(light, ob.name, warnings)
+    strength = _STRENGTH[light.type](target, light, matrix, ob.name, warnings)
+    target.emission[:] = [channel * light.energy * strength for channel in color]
+
+
+def column_major(matrix):
+    return [value for column in matrix.col for value in column]
+
+
+def _color(light, name, warnings):
+    color = compat.light_color(light)
+    if not compat.uses_nodes(light):
+        return color
+    tint = nodes.emission(light.node_tree, f"light '{name}'", warnings)
+    return [a * b for a, b in zip(color, tint)]
+
+
+def _point(target, light, matrix, name, warnings):
+    target.radius = light.shadow_soft_size
+    area = 1.0 if compat.light_is_normalized(light) else pi * light.shadow_soft_size ** 2
+    return area / (4.0 * pi)
+
+
+def _spot(target, light, matrix, name, warnings):
+    target.spot_angle = light.spot_size
+    target.spot_blend = light.spot_blend
+    if compat.SPOT_IS_FLAT_DISK:
+        target.flags |= capi.LIGHT_COSINE_SPOT
+    return _point(target, light, matrix, name, warnings)
+
+
+def _sun(target, light, matrix, name, warnings):
+    target.angle = light.angle
+    return 1.0 if compat.light_is_normalized(light) else pi * (light.angle / 2.0) ** 2
+
+
+def _area(target, light, matrix, name, warnings):
+    target.shape = capi.ELLIPSE if light.shape in {'DISK', 'ELLIPSE'} else capi.RECTANGLE
+    height = light.size_y if light.shape in {'RECTANGLE', 'ELLIPSE'} else light.size
+    target.size[:] = light.size, height
+    if light.spread < pi * 0.999:
+        warnings.append(f"light '{name}': beam spread is not supported, the light shines into all directions")
+    area = light.size * height * matrix.col[0].length * matrix.col[1].length
+    if target.shape == capi.ELLIPSE:
+        area *= pi / 4.0
+    if area < 1e-12:
+        warnings.append(f"light '{name}' has no area and gives no light")
+        return 0.0
+    return compat.AREA_RADIANCE_PER_POWER * (1.0 / area if compat.light_is_normalized(light) else 1.0)
+
+
+_STRENGTH = {'AREA': _area, 'POINT': _point, 'SPOT': _spot, 'SUN': _sun}

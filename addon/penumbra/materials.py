@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Material -> pnb_material: base colour and alpha, each a value and an image."""
+
+from dataclasses import dataclass, field
+
+from . import capi, compat, nodes, textures
+
+GREY = [0.8, 0.8, 0.8]
+
+
+@dataclass
+class Surface:
+    color: list = field(default_factory=lambda: list(GREY))
+    color_image: object = None
+    alpha: float = 1.0
+    alpha_image: object = None
+    alpha_use: str = textures.ALPHA
+
+
+def fill_material(target, material, texture, warnings):
+    """`texture(image, use)` returns a handle or None."""
+    surface = read_surface(material, warnings)
+    target.base_color[:] = surface.color
+    target.transparency = 1.0 - surface.alpha
+    if surface.color_image:
+        target.base_color_texture = texture(surface.color_image, textures.COLOR)
+    if surface.alpha_image:
+        target.alpha_texture = texture(surface.alpha_image, surface.alpha_use)
+
+
+def read_surface(material, warnings):
+    if not compat.uses_nodes(material):
+        return Surface(color=list(material.diffuse_color[:3]))
+    return _Reader(material.name, warnings).shader(nodes.surface(material.node_tree))
+
+
+class _Reader:
+    def __init__(self, name, warnings):
+        self.name = name
+        self.warnings = warnings
+
+    def warn(self, text):
+        self.warnings.append(f"material '{self.name}': {text}")
+
+    def shader(self, source):
+        if source.output is None:
+            return Surface(color=[0.0] * 3)
+        node = source.output.node
+        if node.type == 'BSDF_TRANSPARENT':
+            return Surface(alpha=0.0)
+        if node.type == 'MIX_SHADER':
+            return self.mix(source)
+        surface = Surface()
+        color = next((name for name in ('Base Color', 'Color') if name in node.inputs), None)
+        if color is None:
+            self.warn(f"a {node.name} node is not supported, it is drawn grey")
+            return surface
+        if node.type not in {'BSDF_PRINCIPLED', 'BSDF_DIFFUSE'}:
+            self.warn(f"a {node.name} node is drawn as a diffuse surface of its colour")
+        self.color(source.input(color), surface)
+        if 'Alpha' in node.inputs:
+            self.alpha(source.input('Alpha'), surface)
+        return surface
+
+    def mix(self, source):
+        """Two shaders by factor: by constants, or transparency by an image."""
+        first, second = (follow for follow in self.mix_inputs(source))
+        factor = source.input('Fac' if 'Fac' in source.output.node.inputs else 'Factor')
+        weight = nodes.constant(factor, 0.5)
+        transparent = first.alpha == 0.0
+        if weight is None and transparent and not second.alpha_image:
+            second.alpha_image, second.alpha_use = self.image(factor)
+            return second
+        if weight is None:
+            self.warn("a mix of shaders by nodes is only supported from Transparent, by an image; half of each is taken")
+            weight = 0.5
+        return self.blend(first, second, min(max(weight, 0.0), 1.0))
+
+    def mix_inputs(self, source):
+        for socket in source.output.node.inputs[1:]:
+            yield self.shader(nodes.follow(socket, source.groups))
+
+    def blend(self, first, second, weight):
+        """Colours count by their share of the opaque part."""
+        alpha = first.alpha * (1.0 - weight) + second.alpha * weight
+        share = second.alpha * weight / alpha if alpha > 0.0 else 0.5
+        heavier = second if share > 0.5 else first
+        if 0.0 < share < 1.0:
+            if first.color_image or second.color_image or first.alpha_image or second.alpha_image:
+                self.warn("of two mixed shaders with images only the heavier one is drawn")
+            else:
+                heavier.color = [a + (b - a) * share for a, b in zip(first.color, second.color)]
+        heavier.alpha = alpha
+        return heavier
+
+    def color(self, source, surface):
+        value = nodes.constant(source, GREY)
+        if value is None:
+            surface.color_image, use = self.image(source)
+            surface.color = [1.0] * 3 if surface.color_image else self.fallback(source, GREY)
+        else:
+            surface.color = value[:3] if isinstance(value, list) else [value] * 3
+
+    def alpha(self, source, surface):
+        value = nodes.constant(source, 1.0)
+        if value is None:
+            surface.alpha_image, surface.alpha_use = self.image(source)
+            value = 1.0 if surface.alpha_image else self.fallback(source, 1.0)
+        elif isinstance(value, list):
+            value = sum(value[:3]) / 3.0
+        surface.alpha = min(max(value, 0.0), 1.0)
+
+    def image(self, source):
+        """(image, use) of an Image Texture that feeds the input directly, else (None, use)."""
+        output = source.output
+        if output.node.type != 'TEX_IMAGE' or not output.node.image:
+            self.warn(f"node {output.node.name} is not supported in '{source.socket.name}', or has no image")
+            return None, textures.ALPHA
+        vector = nodes.follow(output.node.inputs['Vector'], source.groups).output
+        if vector and not (vector.node.type == 'UVMAP' or vector.name == 'UV'):
+            self.warn(f"image '{output.node.image.name}' is placed by the active UV map, without {vector.node.name}")
+        return output.node.image, textures.ALPHA if output.name == 'Alpha' else textures.GREY
+
+    def fallback(self, source, default):
+        """The value a socket has beside its unsupported link."""
+        value = getattr(source.socket, 'default_value', default)
+        return value if isinstance(value, (int, float)) else list(value)[:3]

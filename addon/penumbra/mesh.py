@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evaluated mesh -> pnb_mesh: by address and stride where memory matches RNA, else by foreach_get."""
+
+from array import array
+from ctypes import c_float, c_int32, c_uint32, c_void_p
+
+from . import capi, compat
+
+_CTYPES = {'f': c_float, 'I': c_uint32, 'i': c_int32}
+
+# (member, stride): whether memory was found to hold what RNA says.
+_verified = {}
+
+
+def create_mesh(mesh, name, use_pointers, warnings):
+    """Handle of the library's copy, or None for a mesh without triangles."""
+    if not len(mesh.vertices) or not len(mesh.polygons):
+        return None
+    compat.prepare_mesh(mesh)
+    try:
+        desc = capi.MeshDesc(name=name.encode(), vertex_count=len(mesh.vertices), corner_count=len(mesh.loops),
+                             triangle_count=len(mesh.loop_triangles), polygon_count=len(mesh.polygons))
+        copies = [_fill(getattr(desc, source.member), source, use_pointers) for source in compat.mesh_arrays(mesh)]
+        handle = capi.library().create('mesh', desc)
+        del copies
+    finally:
+        compat.release_mesh(mesh)
+    warning = capi.library().mesh_warning(handle).decode(errors='replace')
+    if warning:
+        warnings.append(warning)
+    return handle
+
+
+def _fill(target, source, use_pointers):
+    """Sets data and stride; returns the copy that must outlive the use of them, if there is one."""
+    place = memory_of(source) if use_pointers else None
+    if place:
+        target.data, target.stride = place
+        return None
+    copy = copy_of(source)
+    target.data = c_void_p(copy.buffer_info()[0])
+    target.stride = 4 * source.width
+    return copy
+
+
+def copy_of(source):
+    count = len(source.rna) * source.width
+    copy = array(source.typecode, bytes(4 * count))
+    source.rna.foreach_get(source.attribute, copy)
+    return copy
+
+
+def memory_of(source):
+    """(address, stride) of an array whose memory is what RNA says, or None."""
+    if source.memory is None or len(source.memory) < 2 or len(source.memory) != len(source.rna):
+        return None
+    first = source.memory[0].as_pointer()
+    stride = source.memory[1].as_pointer() - first
+    key = (source.member, stride)
+    if key not in _verified:
+        _verified[key] = _matches(source, first, stride)
+    return (first + source.offset, stride) if _verified[key] else None
+
+
+def _matches(source, first, stride):
+    """Compares some elements: their addresses before anything is read from there."""
+    if stride < source.offset + 4 * source.width:
+        return False
+    element = _CTYPES[source.typecode] * source.width
+    last = len(source.memory) - 1
+    for index in {0, 1, last // 2, last}:
+        address = first + index * stride
+        if source.memory[index].as_pointer() != address:
+            return False
+        value = getattr(source.rna[index], source.attribute)
+        expected = [value] if source.width == 1 else list(value)
+        if list(element.from_address(address + source.offset)) != expected:
+            return False
+    return True

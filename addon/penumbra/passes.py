@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The passes of a view layer: one generator registers them and asks the library for them."""
+
+from array import array
+from ctypes import byref, memmove
+from typing import NamedTuple
+
+from . import capi
+
+LIGHT_PREFIX = "Shadow."
+# Bytes of a pass name in Blender.
+_NAME_SIZE = 63
+
+
+class Pass(NamedTuple):
+    name: str
+    channels: str
+    kind: str           # of the compositor's socket
+    flag: int           # capi.PASS_*
+    background: float   # where the library made no such pass
+
+
+def list_passes(view_layer):
+    yield Pass("Combined", "RGBA", 'COLOR', capi.PASS_COMBINED, 0.0)
+    if view_layer.use_pass_z:
+        yield Pass("Depth", "Z", 'VALUE', capi.PASS_DEPTH, 1e10)
+    if view_layer.use_pass_normal:
+        yield Pass("Normal", "XYZ", 'VECTOR', capi.PASS_NORMAL, 0.0)
+    if view_layer.use_pass_shadow:
+        yield Pass("Shadow", "RGB", 'COLOR', capi.PASS_SHADOW, 1.0)
+    if view_layer.penumbra.use_pass_light_shadows:
+        names = {light_pass_name(ob.name): None for ob in view_layer.objects if ob.type == 'LIGHT'}
+        for name in names:
+            yield Pass(name, "RGB", 'COLOR', capi.PASS_LIGHT_SHADOWS, 1.0)
+
+
+def light_pass_name(light_name):
+    return (LIGHT_PREFIX + light_name).encode()[:_NAME_SIZE].decode(errors='ignore')
+
+
+def wanted(view_layer):
+    """The library's pass flags."""
+    flags = 0
+    for item in list_passes(view_layer):
+        flags |= item.flag
+    return flags
+
+
+def fill_layer(render_layer, view_layer, job, width, height):
+    """Writes a finished job into a render layer: all passes one after the other, as Blender keeps them."""
+    images = _images(job)
+    backgrounds = {item.name: item.background for item in list_passes(view_layer)}
+    pixels = array('f')
+    for render_pass in render_layer.passes:
+        count = width * height * render_pass.channels
+        image = images.get(render_pass.name)
+        if image and image.channels == render_pass.channels and (image.width, image.height) == (width, height):
+            start = len(pixels)
+            pixels.frombytes(bytes(4 * count))
+            memmove(pixels.buffer_info()[0] + 4 * start, image.pixels, 4 * count)
+        else:
+            pixels.extend(array('f', [backgrounds.get(render_pass.name, 0.0)]) * count)
+    render_layer.passes.foreach_set('rect', pixels)
+
+
+def _images(job):
+    """Images by pass name; of lights with one name the first."""
+    images = {}
+    for index in range(capi.library().job_image_count(job)):
+        image = capi.Image()
+        capi.library().job_get_image(job, index, byref(image))
+        images.setdefault(image.name[:_NAME_SIZE].decode(errors='ignore'), image)
+    return images

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Settings. The techniques and their parameters come from the library's table."""
+
+from zlib import crc32
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.types import AddonPreferences, PropertyGroup
+
+from . import capi
+
+DEFAULT_TECHNIQUE = 'PCSS'
+
+
+class PenumbraPreferences(AddonPreferences):
+    bl_idname = __package__
+
+    backend: StringProperty(
+        name="Backend",
+        description="OpenGL to render with: egl (any device), egl:N (device N), surfaceless or osmesa. Empty: the "
+                    "environment variable PENUMBRA_BACKEND, else the first that works, GPUs first")
+
+    def draw(self, _context):
+        self.layout.prop(self, 'backend')
+
+
+class PenumbraViewLayerSettings(PropertyGroup):
+    use_pass_light_shadows: BoolProperty(
+        name="Shadow of Each Light",
+        description="One pass per light, 'Shadow.' and the light's name: how much of that light arrives")
+
+
+def preferences():
+    addon = bpy.context.preferences.addons.get(__package__)
+    return addon.preferences if addon else None
+
+
+def backend():
+    settings = preferences()
+    return settings.backend if settings else ''
+
+
+# ---- Reflection ----
+
+def _property(info):
+    """Blender property of one parameter."""
+    common = {'name': info.label.decode(), 'description': info.description.decode()}
+    if info.type == capi.BOOL:
+        return BoolProperty(default=info.default_value != 0.0, **common)
+    if info.type == capi.ENUM:
+        names = [info.items[index].decode() for index in range(info.item_count)]
+        items = [(name, name.replace('_', ' ').capitalize(), '', index) for index, name in enumerate(names)]
+        return EnumProperty(items=items, default=names[int(info.default_value)], **common)
+    if info.type == capi.INT:
+        return IntProperty(default=int(info.default_value), min=int(info.minimum), max=int(info.maximum), **common)
+    subtype = 'DISTANCE' if info.unit == b'm' else 'NONE'
+    return FloatProperty(default=info.default_value, min=info.minimum, max=info.maximum, precision=3,
+                         subtype=subtype, **common)
+
+
+def technique_number(identifier):
+    """What a .blend stores for a technique: independent of the order and number of techniques."""
+    return crc32(identifier.encode()) >> 1
+
+
+def _technique_class(info, parameters):
+    annotations = {parameter.name.decode(): _property(parameter) for parameter in parameters}
+    return type(f"Penumbra{info.id.decode()}Settings", (PropertyGroup,), {'__annotations__': annotations})
+
+
+def _scene_class(table, technique_classes):
+    items = [(info.id.decode(), info.label.decode(), info.description.decode(), technique_number(info.id.decode()))
+             for info, _parameters in table]
+    identifiers = [item[0] for item in items]
+    annotations = {
+        'technique': EnumProperty(
+            name="Technique", description="How soft shadows are made", items=items,
+            default=DEFAULT_TECHNIQUE if DEFAULT_TECHNIQUE in identifiers else identifiers[0]),
+        'shadow_map_size': IntProperty(
+            name="Shadow Map Size", default=1024, min=16, max=16384, subtype='PIXEL',
+            description="Texels per side of each shadow map"),
+        'samples': IntProperty(
+            name="Samples", default=16, min=1, max=4096, description="Anti-aliasing samples per pixel of a still"),
+        'light_samples': IntProperty(
+            name="Light Samples", default=16, min=1, max=64,
+            description="Reference: N, for N x N samples of each light"),
+    }
+    for (info, _parameters), cls in zip(table, technique_classes):
+        annotations[info.id.decode().lower()] = PointerProperty(type=cls)
+    return type('PenumbraSceneSettings', (PropertyGroup,), {'__annotations__': annotations})
+
+
+def technique(settings):
+    """(TechniqueInfo, [ParameterInfo]) of the chosen technique."""
+    return next(row for row in capi.library().techniques() if row[0].id.decode() == settings.technique)
+
+
+def parameter_values(settings):
+    """[(name, number)] of the chosen technique's parameters."""
+    info, parameters = technique(settings)
+    group = getattr(settings, info.id.decode().lower())
+    return [(parameter.name.decode(), _number(group, parameter)) for parameter in parameters]
+
+
+def _number(group, parameter):
+    value = getattr(group, parameter.name.decode())
+    if parameter.type == capi.ENUM:
+        return group.bl_rna.properties[parameter.name.decode()].enum_items[value].value
+    return float(value)
+
+
+_classes = []
+
+
+def register():
+    table = capi.library().techniques()
+    technique_classes = [_technique_class(*row) for row in table]
+    _classes.extend([PenumbraPreferences, PenumbraViewLayerSettings, *technique_classes,
+                     _scene_class(table, technique_classes)])
+    for cls in _classes:
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.penumbra = PointerProperty(type=_classes[-1])
+    bpy.types.ViewLayer.penumbra = PointerProperty(type=PenumbraViewLayerSettings)
+
+
+def unregister():
+    del bpy.types.ViewLayer.penumbra
+    del bpy.types.Scene.penumbra
+    while _classes:
+        bpy.utils.unregister_class(_classes.pop())

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender image -> pnb_texture."""
+
+from array import array
+from ctypes import c_void_p
+
+from . import capi
+
+# Uses of an image: its colour, its alpha channel, or its brightness as alpha.
+COLOR, ALPHA, GREY = 'color', 'alpha', 'grey'
+
+_LINEAR = {'Linear', 'Linear Rec.709', 'Raw'}
+
+
+class TextureCache:
+    """Textures of unedited image files, kept while an animation is rendered: images cannot be reloaded meanwhile."""
+
+    def __init__(self):
+        self._kept = {}
+
+    def get(self, image, use, warnings):
+        """(handle or None, whether the caller has to destroy it)."""
+        key = (image.library and image.library.filepath, image.name, use)
+        state = (tuple(image.size), image.filepath, image.colorspace_settings.name, image.alpha_mode)
+        keep = image.source == 'FILE' and not image.is_dirty
+        if keep and self._kept.get(key, (None,))[0] == state:
+            return self._kept[key][1], False
+        handle = _create(image, use, warnings)
+        if not keep or handle is None:
+            return handle, True
+        self._drop(key)
+        self._kept[key] = state, handle
+        return handle, False
+
+    def _drop(self, key):
+        if key in self._kept:
+            capi.library().destroy('texture', self._kept.pop(key)[1])
+
+    def clear(self):
+        for key in list(self._kept):
+            self._drop(key)
+
+
+cache = TextureCache()
+
+
+def _create(image, use, warnings):
+    width, height = image.size
+    if not width or not height or not image.has_data:
+        warnings.append(f"image '{image.name}' is missing ({image.filepath or 'no file'})")
+        return None
+    if image.source in {'MOVIE', 'SEQUENCE', 'TILED'}:
+        warnings.append(f"image '{image.name}': of a {image.source.lower()} only one picture is used")
+    pixels = array('f', bytes(4 * len(image.pixels)))
+    image.pixels.foreach_get(pixels)
+    channels = image.channels
+    first, count = _channels(channels, use)
+    desc = capi.TextureDesc(name=image.name.encode(), width=width, height=height, channels=count)
+    desc.is_srgb = use != ALPHA and _is_srgb(image, warnings)
+    desc.pixels.data = c_void_p(pixels.buffer_info()[0] + 4 * first)
+    desc.pixels.stride = 4 * channels
+    try:
+        return capi.library().create('texture', desc)
+    except capi.Error as error:
+        warnings.append(f"image '{image.name}': {error}")
+        return None
+
+
+def _channels(channels, use):
+    """First channel and their number."""
+    if use == ALPHA:
+        return channels - 1, 1
+    return 0, 3 if channels >= 3 else 1
+
+
+def _is_srgb(image, warnings):
+    """Byte images come as stored, float images already linear."""
+    space = image.colorspace_settings
+    if image.is_float or space.is_data or space.name in _LINEAR:
+        return False
+    if space.name != 'sRGB':
+        warnings.append(f"image '{image.name}': colour space {space.name} is taken for sRGB")
+    return True

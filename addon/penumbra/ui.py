@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Panels: our own, and Blender's that fit."""
+
+import textwrap
+
+import bpy
+from bpy.types import Panel
+
+from . import compat, props
+
+ENGINE = 'PENUMBRA'
+
+# Blender's panels that show settings we have our own panels for, or do not have.
+_EXCLUDED = {'DATA_PT_light', 'DATA_PT_area', 'DATA_PT_falloff_curve', 'DATA_PT_preview', 'NODE_DATA_PT_light',
+             'VIEWLAYER_PT_filter', 'VIEWLAYER_PT_layer_passes'}
+
+
+class _EnginePanel:
+    bl_space_type = 'PROPERTIES'
+    bl_region_type = 'WINDOW'
+    COMPAT_ENGINES = {ENGINE}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine in cls.COMPAT_ENGINES
+
+    def _column(self):
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+def _paragraph(layout, text, context):
+    """Text in as many lines as the region's width needs."""
+    characters = max(20, int(context.region.width / (7 * context.preferences.system.ui_scale)))
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for line in textwrap.wrap(text, characters):
+        column.label(text=line)
+
+
+class PENUMBRA_PT_technique(_EnginePanel, Panel):
+    bl_label = "Soft Shadows"
+    bl_context = 'render'
+
+    def draw(self, context):
+        settings = context.scene.penumbra
+        info, parameters = props.technique(settings)
+        column = self._column()
+        column.prop(settings, 'technique')
+        _paragraph(column, info.description.decode(), context)
+        if info.paper:
+            _paragraph(column, info.paper.decode(), context)
+        group = getattr(settings, info.id.decode().lower())
+        for parameter in parameters:
+            column.prop(group, parameter.name.decode())
+        column.separator()
+        column.prop(settings, 'shadow_map_size')
+
+
+class PENUMBRA_PT_sampling(_EnginePanel, Panel):
+    bl_label = "Sampling"
+    bl_context = 'render'
+
+    def draw(self, context):
+        settings = context.scene.penumbra
+        column = self._column()
+        column.prop(settings, 'samples')
+        column.prop(settings, 'light_samples')
+
+
+class PENUMBRA_PT_film(_EnginePanel, Panel):
+    bl_label = "Film"
+    bl_context = 'render'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        column = self._column()
+        column.prop(context.scene.render, 'filter_size')
+        column.prop(context.scene.render, 'film_transparent', text="Transparent")
+
+
+class PENUMBRA_PT_passes(_EnginePanel, Panel):
+    bl_label = "Passes"
+    bl_context = 'view_layer'
+
+    def draw(self, context):
+        view_layer = context.view_layer
+        column = self._column()
+        for name in ('use_pass_combined', 'use_pass_z', 'use_pass_normal', 'use_pass_shadow'):
+            column.prop(view_layer, name)
+        column.prop(view_layer.penumbra, 'use_pass_light_shadows')
+
+
+class PENUMBRA_PT_light(_EnginePanel, Panel):
+    bl_label = "Light"
+    bl_context = 'data'
+
+    @classmethod
+    def poll(cls, context):
+        return context.light and super().poll(context)
+
+    def draw(self, context):
+        light = context.light
+        self.layout.row().prop(light, 'type', expand=True)
+        column = self._column()
+        column.prop(light, 'color')
+        column.prop(light, 'energy')
+        if light.type == 'AREA':
+            column.prop(light, 'shape')
+            two_sided = light.shape in {'RECTANGLE', 'ELLIPSE'}
+            column.prop(light, 'size', text="Size X" if two_sided else "Size")
+            if two_sided:
+                column.prop(light, 'size_y', text="Y")
+        elif light.type == 'SUN':
+            column.prop(light, 'angle')
+        else:
+            column.prop(light, 'shadow_soft_size', text="Radius")
+        column.prop(light, 'use_shadow', text="Cast Shadow")
+
+
+class PENUMBRA_PT_object_visibility(_EnginePanel, Panel):
+    bl_label = "Ray Visibility"
+    bl_context = 'object'
+    bl_parent_id = 'OBJECT_PT_visibility'
+
+    def draw(self, context):
+        column = self._column()
+        column.prop(context.object, 'visible_camera', text="Camera")
+        column.prop(context.object, 'visible_shadow', text="Shadow")
+
+
+CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_film, PENUMBRA_PT_passes, PENUMBRA_PT_light,
+           PENUMBRA_PT_object_visibility)
+
+
+def _adopted():
+    for panel in Panel.__subclasses__():
+        engines = getattr(panel, 'COMPAT_ENGINES', ())
+        if panel.__name__ in compat.ADOPTED_PANELS or 'BLENDER_RENDER' in engines and panel.__name__ not in _EXCLUDED:
+            yield panel
+
+
+def register():
+    for panel in _adopted():
+        panel.COMPAT_ENGINES.add(ENGINE)
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister():
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
+    for panel in _adopted():
+        panel.COMPAT_ENGINES.discard(ENGINE)
