@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Files that appear complete or not at all: written under a temporary name beside the target, then renamed. */
+#ifndef OUTPUT_H
+#define OUTPUT_H
+
+#include "tool.h"
+
+struct output {
+    const char *path;
+    char *temporary; /* what the writer writes to */
+};
+
+/* Creates the temporary file. `path` must outlive the output. */
+bool output_begin(struct output *output, const char *path);
+/* Renames it to the path if `complete`, else removes it. False if anything failed. */
+bool output_end(struct output *output, bool complete);
+
+#endif
