@@ -8,7 +8,7 @@
 /* Three indices of each triangle are counted in 32 bits. */
 #define MESH_MAX_TRIANGLES (UINT32_MAX / 3)
 /* Material slots beyond are taken as this one; hosts have 15 or 16 bits of them. */
-#define MESH_MAX_SLOT      32767u
+#define MESH_MAX_SLOT 32767u
 
 /* An empty mesh with one reference; NULL without memory. */
 pnb_mesh *mesh_allocate(const char *name);

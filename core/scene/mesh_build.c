@@ -13,7 +13,7 @@
 
 /* How many welded vertices of one source vertex are compared before a new one is made. A fan can have any number of
  * different corners at its tip; without a limit the time would grow with their square. */
-#define MAX_COMPARED  64
+#define MAX_COMPARED 64
 
 /* Why a triangle is dropped. */
 enum fault { FAULT_NONE, FAULT_POSITION, FAULT_AREA, FAULT_CORNER, FAULT_VERTEX, FAULT_POLYGON, FAULT_COUNT };
@@ -41,13 +41,13 @@ struct triangle {
 struct build {
     const pnb_mesh_desc *from;
     struct pnb_mesh *mesh;
-    uint16_t *slots;          /* of each source triangle, or SLOT_DROPPED */
-    uint32_t *next_index;     /* where the next triangle of each slot goes in mesh->indices */
+    uint16_t *slots;      /* of each source triangle, or SLOT_DROPPED */
+    uint32_t *next_index; /* where the next triangle of each slot goes in mesh->indices */
     uint32_t slot_count;
     uint32_t faults[FAULT_COUNT];
-    uint32_t bad_uvs;         /* corners */
-    uint32_t *newest;         /* of each source vertex: its newest welded vertex + 1, or 0 */
-    uint32_t *older;          /* of each welded vertex: the one before it of the same source vertex + 1, or 0 */
+    uint32_t bad_uvs; /* corners */
+    uint32_t *newest; /* of each source vertex: its newest welded vertex + 1, or 0 */
+    uint32_t *older;  /* of each welded vertex: the one before it of the same source vertex + 1, or 0 */
     uint32_t vertex_capacity;
 };
 

@@ -40,8 +40,8 @@ static void camera_resolve_window(struct scene_camera *camera, struct messages *
     camera->window_is_default = window[0] == 0 && window[1] == 0 && window[2] == 0 && window[3] == 0;
     bool good = numbers_usable(window, 4) && window[1] > window[0] && window[3] > window[2];
     if (!good && !camera->window_is_default) {
-        messages_add(messages, "camera: its window of %g..%g x %g..%g is empty; the default is used",
-                     (double)window[0], (double)window[1], (double)window[2], (double)window[3]);
+        messages_add(messages, "camera: its window of %g..%g x %g..%g is empty; the default is used", (double)window[0],
+                     (double)window[1], (double)window[2], (double)window[3]);
         camera->window_is_default = true;
     }
     if (camera->window_is_default) {

@@ -7,9 +7,8 @@ static pnb_result check_size(const char *what, uint32_t index, uint32_t found, s
     if (found == expected) {
         return PNB_OK;
     }
-    return error_set(PNB_ERROR_INVALID_ARGUMENT,
-                     "%s %" PRIu32 ": struct_size is %" PRIu32 ", this library expects %zu", what, index, found,
-                     expected);
+    return error_set(PNB_ERROR_INVALID_ARGUMENT, "%s %" PRIu32 ": struct_size is %" PRIu32 ", this library expects %zu",
+                     what, index, found, expected);
 }
 
 static pnb_result check_array(const char *name, uint32_t count, const void *array) {
@@ -23,8 +22,7 @@ static pnb_result check_array(const char *name, uint32_t count, const void *arra
 }
 
 static pnb_result check_instance(const pnb_instance *instance, uint32_t index) {
-    const uint32_t known =
-        PNB_INSTANCE_HIDDEN_FROM_CAMERA | PNB_INSTANCE_NO_SHADOW | PNB_INSTANCE_NO_RECEIVE;
+    const uint32_t known = PNB_INSTANCE_HIDDEN_FROM_CAMERA | PNB_INSTANCE_NO_SHADOW | PNB_INSTANCE_NO_RECEIVE;
     pnb_result result = check_size("instance", index, instance->struct_size, sizeof *instance);
     if (result != PNB_OK) {
         return result;
@@ -34,8 +32,8 @@ static pnb_result check_instance(const pnb_instance *instance, uint32_t index) {
         return error_set(PNB_ERROR_INVALID_ARGUMENT, "instance %" PRIu32 " '%s': its mesh is NULL", index, name);
     }
     if (instance->flags & ~known) {
-        return error_set(PNB_ERROR_INVALID_ARGUMENT, "instance %" PRIu32 " '%s': unknown flags 0x%" PRIx32, index,
-                         name, instance->flags & ~known);
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "instance %" PRIu32 " '%s': unknown flags 0x%" PRIx32, index, name,
+                         instance->flags & ~known);
     }
     return PNB_OK;
 }

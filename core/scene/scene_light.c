@@ -69,8 +69,8 @@ static void light_copy(const pnb_light *from, struct scene_light *to) {
 }
 
 static bool light_is_usable(const struct scene_light *light) {
-    const float others[] = {light->size[0], light->size[1], light->radius, light->angle, light->spot_angle,
-                            light->spot_blend};
+    const float others[] = {light->size[0], light->size[1],    light->radius,
+                            light->angle,   light->spot_angle, light->spot_blend};
     bool usable = numbers_usable(light->matrix, 16) && numbers_usable(light->emission, 3) &&
                   numbers_usable(others, sizeof others / sizeof *others);
     for (int i = 0; usable && i < 2; i++) {

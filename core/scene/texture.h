@@ -5,7 +5,7 @@
 
 #include "scene.h"
 
-#define TEXTURE_MAX_SIDE  16384u
+#define TEXTURE_MAX_SIDE 16384u
 /* The largest finite half float. */
 #define TEXTURE_MAX_COLOR 65504.0f
 
