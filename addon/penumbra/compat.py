@@ -13,9 +13,6 @@ AREA_RADIANCE_PER_POWER = 1.0 / pi if BLENDER_4 else 1.0 / 4.0
 SPOT_IS_FLAT_DISK = not BLENDER_4
 SPOT_IS_SCALED = BLENDER_4
 
-# Metaballs come as instances of meshes since 3.6.
-GEOMETRY_TYPES = {'MESH', 'CURVE', 'SURFACE', 'FONT'} | (set() if bpy.app.version >= (3, 6) else {'META'})
-
 # Panels of other engines that fit this one too.
 ADOPTED_PANELS = ('EEVEE_MATERIAL_PT_context_material', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface')
 

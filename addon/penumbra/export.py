@@ -97,8 +97,9 @@ class SceneExport:
         self._lights.append(light)
 
     def _mesh_of(self, ob):
-        """Handle of the object's mesh, shared by all instances of the same evaluated data; None without one."""
-        if ob.type not in compat.GEOMETRY_TYPES:
+        """Handle of the object's mesh, shared by all instances of the same evaluated data; None without one.
+        Curves, surfaces, texts and metaballs come as instances of their evaluated mesh beside themselves."""
+        if ob.type != 'MESH':
             if ob.type in _UNSUPPORTED:
                 self.warnings.append(f"object '{ob.name}': {_UNSUPPORTED[ob.type]} cannot be rendered")
             return None
@@ -108,13 +109,12 @@ class SceneExport:
         return self._meshes[key]
 
     def _create_mesh(self, ob):
-        is_mesh = ob.type == 'MESH' and not ob.data.is_editmode
-        mesh = ob.data if is_mesh else ob.to_mesh()
+        if not ob.data.is_editmode:
+            return create_mesh(ob.data, ob.name, self._use_pointers, self.warnings)
         try:
-            return create_mesh(mesh, ob.name, self._use_pointers, self.warnings) if mesh else None
+            return create_mesh(ob.to_mesh(), ob.name, self._use_pointers, self.warnings)
         finally:
-            if not is_mesh:
-                ob.to_mesh_clear()
+            ob.to_mesh_clear()
 
     # ---- Materials ----
 
