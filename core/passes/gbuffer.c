@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "../gl/program.h"
+#include "passes.h"
+
+static void upload_camera(struct renderer *renderer, const struct camera_block *camera) {
+    const struct gl *gl = renderer->gl;
+    gl->BindBuffer(GL_UNIFORM_BUFFER, renderer->camera_buffer);
+    gl->BufferData(GL_UNIFORM_BUFFER, sizeof *camera, camera, GL_STREAM_DRAW);
+    gl->BindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->camera_buffer);
+}
+
+static pnb_result ensure_gbuffer(struct renderer *renderer, int width, int height) {
+    const struct {
+        struct gl_texture *texture;
+        GLenum format;
+    } parts[] = {{&renderer->gbuffer_depth, GL_R32F},
+                 {&renderer->gbuffer_normal, GL_RGBA16_SNORM},
+                 {&renderer->gbuffer_color, GL_RGBA16F},
+                 {&renderer->gbuffer_z, GL_DEPTH_COMPONENT32F}};
+    for (int i = 0; i < 4; i++) {
+        pnb_result result =
+            gl_texture_ensure(renderer->gl, parts[i].texture, parts[i].format, width, height, 0, 1);
+        if (result != PNB_OK)
+            return result;
+    }
+    return PNB_OK;
+}
+
+/* The projection of the full image, seen through the crop: pixels must not depend on it. */
+static void crop_viewport(const struct gl *gl, const struct settings *settings) {
+    gl->Viewport(-(GLint)settings->crop[0], -(GLint)settings->crop[1], (GLsizei)settings->width,
+                 (GLsizei)settings->height);
+}
+
+pnb_result pass_gbuffer(struct frame *frame) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    pnb_result result = ensure_gbuffer(renderer, frame->width, frame->height);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "G-buffer")) != PNB_OK)
+        return result;
+    upload_camera(renderer, &frame->camera);
+    const struct gl_target target = {
+        .colors = {&renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color},
+        .color_count = 3,
+        .depth = &renderer->gbuffer_z};
+    if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
+        return result;
+    crop_viewport(gl, frame->settings);
+    gl->Enable(GL_DEPTH_TEST);
+    gl->DepthMask(GL_TRUE);
+    gl->Disable(GL_BLEND);
+    const float nothing[4] = {0, 0, 0, 0}, farthest = 1.0f;
+    for (int i = 0; i < 3; i++)
+        gl->ClearBufferfv(GL_COLOR, i, nothing);
+    gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
+
+    float planes[2] = {frame->scene->camera.clip_start, frame->scene->camera.clip_end};
+    gpu_scene_depth_range(renderer->scene, &frame->camera, planes);
+    mat4 clip;
+    camera_projection(&frame->camera, planes[0], planes[1], clip);
+    for (int i = 0; i < 2; i++) {
+        gl->UseProgram(renderer->gbuffer_programs[i]);
+        program_set_mat4(gl, renderer->gbuffer_programs[i], "projection", (const float *)clip);
+    }
+    const struct draw_programs programs = {renderer->gbuffer_programs[0], renderer->gbuffer_programs[1], false};
+    result = gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA, &programs);
+    timer_end(&renderer->timer, gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +
+                                    gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_z));
+    return result;
+}

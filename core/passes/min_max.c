@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "../gl/program.h"
+#include "passes.h"
+
+pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struct gl_texture *pyramid) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    const GLuint program = renderer->min_max_program;
+    /* Texture levels halve by floor; a side rounded up to a power of two makes that exact. */
+    int side = 1, levels = 1;
+    for (; 2 * side < map->width; side *= 2)
+        levels++;
+    pnb_result result = gl_texture_ensure(gl, pyramid, GL_RG32F, side, side, map->layers, levels);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Min-max pyramid")) != PNB_OK)
+        return result;
+    gl->UseProgram(program);
+    program_set_int(gl, program, "source", 0);
+    for (int level = 0; level < levels; level++) {
+        const struct gl_texture *source = level == 0 ? map : pyramid;
+        const GLuint groups = (GLuint)((side >> level) + 7) / 8;
+        gl_texture_bind(gl, source, 0);
+        program_set_int(gl, program, "source_level", level == 0 ? 0 : level - 1);
+        program_set_int(gl, program, "source_is_map", level == 0);
+        gl->BindImageTexture(0, pyramid->id, level, GL_TRUE, 0, GL_WRITE_ONLY, GL_RG32F);
+        gl->DispatchCompute(groups, groups, (GLuint)map->layers);
+        gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
+    }
+    timer_end(&renderer->timer, gl_texture_bytes(pyramid));
+    return gl_check(gl, "min-max pyramid");
+}

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The shared passes. Each names what it reads and what it writes (texture, size, space, format). All run on the
+ * OpenGL thread, record their own timing, and leave the framebuffer, program and textures they bound bound: a pass
+ * sets all the state it depends on. W x H is the crop's size, S the shadow map's side. */
+#ifndef PNB_PASSES_H
+#define PNB_PASSES_H
+
+#include "../render/frame.h"
+#include "../render/gpu_scene.h"
+#include "../render/timer.h"
+#include "../techniques/technique.h"
+
+/* One light as common_light.glsl reads it (std140). */
+struct light_block {
+    struct light_view views[MAX_LIGHT_VIEWS];
+    vec4 position, frame_x, frame_y, frame_z, half_u, half_v, emission, cone;
+    int32_t faces_a[4], faces_b[4];
+    float tan_half_angle, casts_shadow;
+    int32_t view_count;
+    float padding;
+};
+_Static_assert(sizeof(struct light_view) == 96, "std140 layout of light_view");
+_Static_assert(sizeof(struct light_block) == 6 * 96 + 11 * 16, "std140 layout of light_block");
+_Static_assert(sizeof(struct camera_block) == 6 * 16, "std140 layout of camera_block");
+
+/* A visibility program and the technique it was made for. */
+struct technique_program {
+    const struct technique *technique;
+    GLuint program;
+};
+#define MAX_TECHNIQUES 32
+
+struct renderer {
+    const struct gl *gl;
+    struct gpu_scene *scene;
+    struct timer timer;
+    GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer, box_buffer;
+    GLuint gbuffer_programs[2], shadow_programs[2][2]; /* plain, textured; [orthographic, perspective] */
+    GLuint min_max_program, bounds_program, base_program, shading_program, resolve_program, reference_program;
+    struct technique_program visibility_programs[MAX_TECHNIQUES];
+
+    /* G-buffer, W x H: see common_camera.glsl for the contents. */
+    struct gl_texture gbuffer_depth, gbuffer_normal, gbuffer_color, gbuffer_z;
+    struct gl_texture visibility; /* RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
+    /* Sums over the samples, RGBA32F, W x H. */
+    struct gl_texture combined, shadowed, unshadowed, normal;
+    struct gl_texture light_shadows[MAX_LIGHTS];
+    /* Resolved images, RGBA32F, W x H. */
+    struct gl_texture out_combined, out_shadow, out_normal;
+};
+
+/* gbuffer.c: scene -> gbuffer_* of the frame's sample. */
+pnb_result pass_gbuffer(struct frame *frame);
+/* bounds.c: gbuffer_depth -> frame->receivers, boxes in relative world space, read back. */
+pnb_result pass_bounds(struct frame *frame);
+/* shadow_map.c: casters -> map, DEPTH_COMPONENT32F, S x S x a layer per view, linear light-space depth 0..1. */
+pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
+                           struct gl_texture *map);
+/* min_max.c: map -> pyramid, RG32F, S/2 x S/2 x layers with all levels: least and greatest depth. */
+pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struct gl_texture *pyramid);
+/* visibility.c: G-buffer, map, min_max -> renderer.visibility, by the technique. */
+pnb_result pass_visibility(struct frame *frame, const struct frame_light *light);
+/* Uploads the light for the shaders of the passes after it. */
+void light_block_upload(struct renderer *renderer, const struct emitter *emitter, const struct light_views *views);
+/* Binds gbuffer_depth, _normal and _color as the current program's samplers. */
+void bind_gbuffer(struct renderer *renderer, GLuint program);
+/* shading.c: clears the sums; adds background, ambient and normal; adds one light's radiance and irradiance. */
+pnb_result pass_clear_sums(struct frame *frame);
+pnb_result pass_base(struct frame *frame);
+pnb_result pass_shading(struct frame *frame, uint32_t light);
+/* resolve.c: keeps what is wanted of the first sample alone (depth); sums -> images of the job, read back. */
+pnb_result pass_first_sample(struct frame *frame);
+pnb_result pass_resolve(struct frame *frame);
+
+/* Draws one triangle over the bound target with the current program. */
+void draw_screen(struct renderer *renderer);
+
+#endif

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "../gl/program.h"
+#include "passes.h"
+
+static pnb_result draw_view(struct frame *frame, const struct light_view *view, const struct gl_texture *map, int layer) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    const struct gl_target target = {.depth = map, .layer = layer};
+    pnb_result result = gl_target_bind(gl, renderer->framebuffer, &target);
+    if (result != PNB_OK)
+        return result;
+    const float farthest = 1.0f;
+    gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
+    mat4 projection, clip;
+    light_view_projection(view, projection);
+    glm_mat4_mul(projection, (vec4 *)view->from_world, clip);
+    const GLuint *programs = renderer->shadow_programs[view->perspective != 0.0f];
+    for (int i = 0; i < 2; i++) {
+        gl->UseProgram(programs[i]);
+        program_set_mat4(gl, programs[i], "projection", (const float *)clip);
+        program_set_vec2(gl, programs[i], "depth_planes", (const float[2]){view->near_depth, view->far_depth});
+    }
+    const struct draw_programs draw_programs = {programs[0], programs[1], true};
+    return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, &draw_programs);
+}
+
+pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
+                           struct gl_texture *map) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    const int side = (int)frame->settings->shadow_map_size;
+    pnb_result result = gl_texture_ensure(gl, map, GL_DEPTH_COMPONENT32F, side, side, views->count, 1);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Shadow map")) != PNB_OK)
+        return result;
+    gl->Enable(GL_DEPTH_TEST);
+    gl->DepthMask(GL_TRUE);
+    for (int i = 0; i < views->count && result == PNB_OK; i++)
+        result = draw_view(frame, &views->views[i], map, i);
+    timer_end(&renderer->timer, gl_texture_bytes(map));
+    return result;
+}

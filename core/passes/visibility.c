@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "../gl/program.h"
+#include "passes.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void light_block_upload(struct renderer *renderer, const struct emitter *emitter, const struct light_views *views) {
+    struct light_block block = {.tan_half_angle = emitter->tan_half_angle,
+                                .casts_shadow = emitter->casts_shadow ? 1.0f : 0.0f,
+                                .view_count = views->count};
+    memcpy(block.views, views->views, sizeof block.views);
+    glm_vec4((float *)emitter->position, (float)emitter->type, block.position);
+    glm_vec4((float *)emitter->frame[0], emitter->ellipse ? 1.0f : 0.0f, block.frame_x);
+    glm_vec4((float *)emitter->frame[1], emitter->cosine_spot ? 1.0f : 0.0f, block.frame_y);
+    glm_vec4((float *)emitter->frame[2], 0.0f, block.frame_z);
+    glm_vec4((float *)emitter->half_u, 0.0f, block.half_u);
+    glm_vec4((float *)emitter->half_v, 0.0f, block.half_v);
+    glm_vec4((float *)emitter->emission, emitter->radius, block.emission);
+    block.cone[0] = emitter->cos_cone;
+    block.cone[1] = emitter->blend;
+    block.cone[2] = emitter->cone_scale[0];
+    block.cone[3] = emitter->cone_scale[1];
+    for (int i = 0; i < 4; i++)
+        block.faces_a[i] = views->layer_of_face[i];
+    block.faces_b[0] = views->layer_of_face[4];
+    block.faces_b[1] = views->layer_of_face[5];
+    block.faces_b[2] = views->single ? 1 : 0;
+    const struct gl *gl = renderer->gl;
+    gl->BindBuffer(GL_UNIFORM_BUFFER, renderer->light_buffer);
+    gl->BufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
+    gl->BindBufferBase(GL_UNIFORM_BUFFER, 1, renderer->light_buffer);
+}
+
+void bind_gbuffer(struct renderer *renderer, GLuint program) {
+    static const char *const names[] = {"gbuffer_depth", "gbuffer_normal", "gbuffer_color"};
+    const struct gl_texture *textures[] = {&renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color};
+    for (int i = 0; i < 3; i++) {
+        gl_texture_bind(renderer->gl, textures[i], i);
+        program_set_int(renderer->gl, program, names[i], i);
+    }
+}
+
+/* The technique's program, compiled at its first use. */
+static pnb_result technique_program(struct renderer *renderer, const struct technique *technique, GLuint *program) {
+    struct technique_program *entry = renderer->visibility_programs;
+    while (entry->technique && entry->technique != technique)
+        entry++;
+    if (!entry->technique) {
+        const struct program_desc desc = {
+            .vertex = "pass_screen.vert", .fragment = "pass_visibility.frag", .technique = technique->shader};
+        pnb_result result = program_create(renderer->gl, &desc, &entry->program);
+        if (result != PNB_OK)
+            return result;
+        entry->technique = technique;
+    }
+    *program = entry->program;
+    return PNB_OK;
+}
+
+static void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings) {
+    for (int i = 0; settings->technique->parameters[i].name; i++) {
+        const struct parameter *parameter = &settings->technique->parameters[i];
+        char name[64];
+        snprintf(name, sizeof name, "p_%s", parameter->name);
+        if (parameter->type == PNB_FLOAT)
+            program_set_float(gl, program, name, (float)settings->parameters[i]);
+        else
+            program_set_int(gl, program, name, (int)settings->parameters[i]);
+    }
+}
+
+static void upload_taps(struct frame *frame, GLuint program, bool ellipse) {
+    const struct gl *gl = frame->gl;
+    struct taps taps = {0};
+    frame->settings->technique->taps(frame->settings->parameters, ellipse, frame->sample, &taps);
+    gl->BindBuffer(GL_UNIFORM_BUFFER, frame->renderer->tap_buffer);
+    gl->BufferData(GL_UNIFORM_BUFFER, sizeof taps.search + sizeof taps.filter, &taps, GL_STREAM_DRAW);
+    gl->BindBufferBase(GL_UNIFORM_BUFFER, 2, frame->renderer->tap_buffer);
+    program_set_int(gl, program, "search_count", taps.search_count);
+    program_set_int(gl, program, "filter_count", taps.filter_count);
+}
+
+pnb_result pass_visibility(struct frame *frame, const struct frame_light *light) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    GLuint program;
+    pnb_result result = technique_program(renderer, frame->settings->technique, &program);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
+        return result;
+    const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1};
+    if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
+        return result;
+    gl->Disable(GL_DEPTH_TEST);
+    gl->Disable(GL_BLEND);
+    gl->UseProgram(program);
+    bind_gbuffer(renderer, program);
+    set_parameters(gl, program, frame->settings);
+    if (frame->settings->technique->taps)
+        upload_taps(frame, program, light->emitter.ellipse);
+    if (light->views.count > 0) {
+        gl_texture_bind(gl, &light->shadow_map, 3);
+        if (light->min_max.id)
+            gl_texture_bind(gl, &light->min_max, 4);
+    }
+    program_set_int(gl, program, "shadow_map", 3);
+    program_set_int(gl, program, "min_max", 4);
+    draw_screen(renderer);
+    timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
+    return gl_check(gl, "visibility");
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Everything of one render that passes and techniques share. Lives on the OpenGL thread. */
+#ifndef PNB_FRAME_H
+#define PNB_FRAME_H
+
+#include "../gl/texture.h"
+#include "job.h"
+#include "light.h"
+#include "sampling.h"
+
+struct renderer;
+struct gpu_scene;
+
+/* The camera of one sample, std140 as common_camera.glsl reads it. */
+struct camera_block {
+    vec4 axis_x, axis_y, axis_z;
+    vec4 window; /* left, bottom, width, height of the full image at distance 1 or in metres */
+    vec4 image;  /* full width and height, lower left pixel of the crop */
+    float perspective, sample_index, sample_count, padding;
+};
+
+struct frame_light {
+    const struct scene_light *source;
+    struct emitter emitter;
+    struct light_views views;
+    struct gl_texture shadow_map, min_max; /* a layer per view; kept over the samples of a pixel */
+};
+
+struct frame {
+    const struct gl *gl;
+    struct renderer *renderer;
+    struct pnb_job *job;
+    const struct scene *scene;
+    const struct settings *settings;
+    vec3 origin;               /* of relative world space: the camera's position */
+    struct camera_block camera;
+    int width, height;         /* of the crop */
+    uint32_t sample;           /* anti-aliasing sample being drawn */
+
+    struct box *receivers;     /* what the camera sees, by tiles; see bounds.c */
+    size_t receiver_count;
+    struct box *coarse_receivers; /* the same in fewer boxes, for techniques that fit many views */
+    size_t coarse_receiver_count;
+    struct box *casters;       /* bounds of the instances that cast shadows */
+    size_t caster_count;
+    float *first_depth;        /* gbuffer_depth of sample 0, for the Depth pass */
+
+    struct frame_light lights[MAX_LIGHTS];
+};
+
+/* camera.c. Relative world to clip space of the sample, with planes around what is in view. */
+void camera_block_init(struct camera_block *block, const struct scene_camera *camera, const struct settings *settings,
+                       uint32_t sample);
+void camera_projection(const struct camera_block *block, float near_depth, float far_depth, mat4 projection);
+
+#endif

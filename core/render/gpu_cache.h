@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Meshes and textures in OpenGL memory, found by content. */
+#ifndef PNB_GPU_CACHE_H
+#define PNB_GPU_CACHE_H
+
+#include "../gl/gl.h"
+#include "../scene/scene.h"
+
+struct gpu_mesh {
+    struct content_key key;
+    uint64_t serial;          /* order of creation */
+    uint64_t last_frame;
+    uint64_t bytes;
+    GLuint vertex_array, vertex_buffer, index_buffer;
+    struct mesh_range *ranges;
+    uint32_t range_count;
+};
+
+struct gpu_image {
+    struct content_key key;
+    uint64_t last_frame;
+    uint64_t bytes;
+    GLuint texture;
+};
+
+struct gpu_cache {
+    const struct gl *gl;
+    GLuint instance_index_buffer; /* attribute 3 of every vertex array; see common_instance.glsl */
+    struct gpu_mesh **meshes;     /* open addressing by key; NULL: free */
+    struct gpu_image **images;
+    uint32_t mesh_capacity, image_capacity, mesh_count, image_count;
+    uint64_t frame, serial, bytes;
+};
+
+void gpu_cache_init(struct gpu_cache *cache, const struct gl *gl, GLuint instance_index_buffer);
+void gpu_cache_free(struct gpu_cache *cache);
+/* What is looked up from now on belongs to a new frame. */
+void gpu_cache_begin_frame(struct gpu_cache *cache);
+/* Looks up or uploads. The result stays valid until an evict after a frame that did not use it. */
+pnb_result gpu_cache_mesh(struct gpu_cache *cache, const pnb_mesh *mesh, const struct gpu_mesh **out);
+pnb_result gpu_cache_image(struct gpu_cache *cache, const pnb_texture *texture, const struct gpu_image **out);
+/* Frees what the last few frames did not use. */
+void gpu_cache_evict(struct gpu_cache *cache);
+
+#endif

@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "gpu_scene.h"
+#include "../memory.h"
+#include "../gl/program.h"
+#include "gpu_cache.h"
+
+#include <float.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* As common_instance.glsl reads it. */
+struct instance_block {
+    vec4 rows[3];
+    vec4 receives;
+};
+
+/* A range of a mesh with one material, for one instance; sorted so that equal draws become one call. */
+struct draw {
+    const struct gpu_mesh *mesh;
+    const struct mesh_range *range;
+    uint32_t material, instance;
+};
+
+struct gpu_material {
+    vec4 base_color; /* rgb, alpha */
+    const struct gpu_image *base_color_texture, *alpha_texture;
+    bool alpha_in_red, transparent, textured;
+};
+
+struct gpu_scene {
+    const struct gl *gl;
+    struct gpu_cache cache;
+    GLuint instance_buffer, index_buffer; /* instance_block per instance; instance number per drawn instance */
+    uint32_t instance_count, draw_count, material_count;
+    struct box *bounds;   /* per instance, relative world */
+    uint32_t *flags;      /* per instance */
+    struct draw *draws;
+    struct gpu_material *materials;
+    uint32_t *visible;    /* scratch of gpu_scene_draw: instance numbers in draw order */
+};
+
+pnb_result gpu_scene_create(const struct gl *gl, struct gpu_scene **out) {
+    struct gpu_scene *scene = memory_array(1, sizeof *scene);
+    if (!scene)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    scene->gl = gl;
+    gl->GenBuffers(1, &scene->instance_buffer);
+    gl->GenBuffers(1, &scene->index_buffer);
+    gpu_cache_init(&scene->cache, gl, scene->index_buffer);
+    *out = scene;
+    return PNB_OK;
+}
+
+static void free_frame_data(struct gpu_scene *scene) {
+    memory_free(scene->bounds);
+    memory_free(scene->flags);
+    memory_free(scene->draws);
+    memory_free(scene->materials);
+    memory_free(scene->visible);
+    scene->bounds = NULL;
+    scene->flags = scene->visible = NULL;
+    scene->draws = NULL;
+    scene->materials = NULL;
+    scene->instance_count = scene->draw_count = scene->material_count = 0;
+}
+
+void gpu_scene_destroy(struct gpu_scene **out) {
+    struct gpu_scene *scene = *out;
+    if (!scene)
+        return;
+    free_frame_data(scene);
+    gpu_cache_free(&scene->cache);
+    scene->gl->DeleteBuffers(1, &scene->instance_buffer);
+    scene->gl->DeleteBuffers(1, &scene->index_buffer);
+    memory_free(scene);
+    *out = NULL;
+}
+
+uint64_t gpu_scene_bytes(const struct gpu_scene *scene) {
+    return scene->cache.bytes + scene->instance_count * sizeof(struct instance_block);
+}
+
+/* ---- Materials ---- */
+
+static pnb_result load_materials(struct gpu_scene *scene, const struct scene *from) {
+    scene->materials = memory_array(from->material_count, sizeof *scene->materials);
+    if (!scene->materials)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    scene->material_count = from->material_count;
+    for (uint32_t i = 0; i < from->material_count; i++) {
+        const struct scene_material *source = &from->materials[i];
+        struct gpu_material *material = &scene->materials[i];
+        glm_vec3_copy((float *)source->base_color, material->base_color);
+        material->base_color[3] = source->alpha;
+        pnb_result result = PNB_OK;
+        if (source->base_color_texture)
+            result = gpu_cache_image(&scene->cache, source->base_color_texture, &material->base_color_texture);
+        if (result == PNB_OK && source->alpha_texture)
+            result = gpu_cache_image(&scene->cache, source->alpha_texture, &material->alpha_texture);
+        if (result != PNB_OK)
+            return result;
+        material->alpha_in_red = source->alpha_texture && !source->alpha_texture->has_alpha;
+        material->transparent = source->alpha < 1.0f || source->alpha_texture;
+        material->textured = source->base_color_texture || source->alpha_texture;
+    }
+    return PNB_OK;
+}
+
+/* ---- Instances ---- */
+
+/* Object to relative world, in double where a large translation meets a large origin. */
+static void relative_rows(const float matrix[16], const vec3 origin, vec4 rows[3]) {
+    for (int row = 0; row < 3; row++) {
+        for (int column = 0; column < 3; column++)
+            rows[row][column] = matrix[4 * column + row];
+        rows[row][3] = (float)((double)matrix[12 + row] - (double)origin[row]);
+    }
+}
+
+/* Bounds of a transformed box, by interval arithmetic (Arvo 1990). */
+static struct box transform_box(const float bounds[2][3], vec4 rows[3]) {
+    struct box box;
+    for (int row = 0; row < 3; row++) {
+        float low = rows[row][3], high = rows[row][3];
+        for (int column = 0; column < 3; column++) {
+            const float a = rows[row][column] * bounds[0][column], b = rows[row][column] * bounds[1][column];
+            low += a < b ? a : b;
+            high += a < b ? b : a;
+        }
+        box.minimum[row] = low;
+        box.maximum[row] = high;
+    }
+    return box;
+}
+
+static bool box_is_empty(const struct box *box) {
+    return !(box->minimum[0] <= box->maximum[0]);
+}
+
+static pnb_result load_instances(struct gpu_scene *scene, struct frame *frame) {
+    const struct scene *from = frame->scene;
+    const uint32_t count = from->instance_count;
+    struct instance_block *blocks = memory_array(count, sizeof *blocks);
+    scene->bounds = memory_array(count, sizeof *scene->bounds);
+    scene->flags = memory_array(count, sizeof *scene->flags);
+    frame->casters = memory_array(count, sizeof *frame->casters);
+    if (!blocks || !scene->bounds || !scene->flags || !frame->casters) {
+        memory_free(blocks);
+        return PNB_ERROR_OUT_OF_MEMORY;
+    }
+    scene->instance_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        const struct scene_instance *instance = &from->instances[i];
+        relative_rows(instance->matrix, frame->origin, blocks[i].rows);
+        blocks[i].receives[0] = instance->flags & PNB_INSTANCE_NO_RECEIVE ? 0.5f : 1.0f;
+        scene->flags[i] = instance->flags;
+        scene->bounds[i] = instance->mesh->index_count ? transform_box(instance->mesh->bounds, blocks[i].rows)
+                                                       : (struct box){{FLT_MAX, 0, 0}, {-FLT_MAX, 0, 0}};
+        if (!(instance->flags & PNB_INSTANCE_NO_SHADOW) && !box_is_empty(&scene->bounds[i]))
+            frame->casters[frame->caster_count++] = scene->bounds[i];
+    }
+    const struct gl *gl = scene->gl;
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, scene->instance_buffer);
+    gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)((count ? count : 1) * sizeof *blocks), count ? blocks : NULL,
+                   GL_STREAM_DRAW);
+    memory_free(blocks);
+    return gl_check(gl, "instances");
+}
+
+/* ---- Draws ---- */
+
+static uint32_t material_of(const struct scene *from, const struct scene_instance *instance, uint32_t slot) {
+    if (instance->slot_count == 0)
+        return from->material_count - 1; /* the default */
+    return from->slots[instance->first_slot + (slot < instance->slot_count ? slot : instance->slot_count - 1)];
+}
+
+static int compare_pointers(const void *a, const void *b) {
+    return (a > b) - (a < b);
+}
+
+static int compare_draws(const void *first, const void *second) {
+    const struct draw *a = first, *b = second;
+    if (a->mesh != b->mesh)
+        return a->mesh->serial < b->mesh->serial ? -1 : 1;
+    if (a->range != b->range)
+        return compare_pointers(a->range, b->range);
+    if (a->material != b->material)
+        return a->material < b->material ? -1 : 1;
+    return (a->instance > b->instance) - (a->instance < b->instance);
+}
+
+static pnb_result load_draws(struct gpu_scene *scene, const struct scene *from) {
+    size_t count = 0;
+    for (uint32_t i = 0; i < from->instance_count; i++)
+        count += from->instances[i].mesh->range_count;
+    scene->draws = memory_array(count, sizeof *scene->draws);
+    scene->visible = memory_array(count, sizeof *scene->visible);
+    if (!scene->draws || !scene->visible)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < from->instance_count; i++) {
+        const struct scene_instance *instance = &from->instances[i];
+        const struct gpu_mesh *mesh;
+        if (instance->mesh->index_count == 0)
+            continue;
+        pnb_result result = gpu_cache_mesh(&scene->cache, instance->mesh, &mesh);
+        if (result != PNB_OK)
+            return result;
+        for (uint32_t r = 0; r < mesh->range_count; r++)
+            scene->draws[scene->draw_count++] =
+                (struct draw){mesh, &mesh->ranges[r], material_of(from, instance, mesh->ranges[r].slot), i};
+    }
+    qsort(scene->draws, scene->draw_count, sizeof *scene->draws, compare_draws);
+    return PNB_OK;
+}
+
+pnb_result gpu_scene_update(struct gpu_scene *scene, struct frame *frame) {
+    free_frame_data(scene);
+    gpu_cache_begin_frame(&scene->cache);
+    pnb_result result;
+    if ((result = load_materials(scene, frame->scene)) != PNB_OK || (result = load_instances(scene, frame)) != PNB_OK ||
+        (result = load_draws(scene, frame->scene)) != PNB_OK)
+        return result;
+    gpu_cache_evict(&scene->cache);
+    return PNB_OK;
+}
+
+/* Whether a box lies wholly outside one of the side planes of a clip volume, or behind its eye. */
+static bool box_is_outside(const struct box *box, const mat4 clip) {
+    unsigned outside = ~0u;
+    for (int corner = 0; corner < 8; corner++) {
+        vec4 p = {(corner & 1) ? box->maximum[0] : box->minimum[0], (corner & 2) ? box->maximum[1] : box->minimum[1],
+                  (corner & 4) ? box->maximum[2] : box->minimum[2], 1.0f};
+        glm_mat4_mulv((vec4 *)clip, p, p);
+        outside &= (p[0] < -p[3] ? 1u : 0u) | (p[0] > p[3] ? 2u : 0u) | (p[1] < -p[3] ? 4u : 0u) |
+                   (p[1] > p[3] ? 8u : 0u) | (p[2] < -p[3] ? 16u : 0u) | (p[2] > p[3] ? 32u : 0u);
+    }
+    return outside != 0;
+}
+
+static void bind_material(const struct gl *gl, GLuint program, const struct gpu_material *material, bool textures) {
+    program_set_vec4(gl, program, "base_color", material->base_color);
+    if (!textures)
+        return;
+    const vec4 use = {material->base_color_texture ? 1.0f : 0.0f, material->alpha_texture ? 1.0f : 0.0f,
+                      material->alpha_in_red ? 0.0f : 1.0f, 0.0f};
+    program_set_vec4(gl, program, "texture_use", use);
+    program_set_int(gl, program, "base_color_texture", 0);
+    program_set_int(gl, program, "alpha_texture", 1);
+    for (int unit = 0; unit < 2; unit++) {
+        const struct gpu_image *image = unit == 0 ? material->base_color_texture : material->alpha_texture;
+        gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
+        gl->BindTexture(GL_TEXTURE_2D, image ? image->texture : 0);
+    }
+}
+
+static bool is_same_call(const struct draw *a, const struct draw *b) {
+    return a->mesh == b->mesh && a->range == b->range && a->material == b->material;
+}
+
+pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hidden_by,
+                          const struct draw_programs *programs) {
+    const struct gl *gl = scene->gl;
+    bool *culled = memory_array(scene->instance_count, sizeof *culled);
+    if (!culled)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    for (uint32_t i = 0; i < scene->instance_count; i++)
+        culled[i] = (scene->flags[i] & hidden_by) || box_is_outside(&scene->bounds[i], clip);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->draw_count; i++)
+        if (!culled[scene->draws[i].instance])
+            scene->visible[count++] = scene->draws[i].instance;
+    gl->BindBuffer(GL_ARRAY_BUFFER, scene->index_buffer);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((count ? count : 1) * sizeof(uint32_t)), count ? scene->visible : NULL,
+                   GL_STREAM_DRAW);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, scene->instance_buffer);
+    GLuint current = 0;
+    for (uint32_t i = 0, base = 0; i < scene->draw_count;) {
+        const struct draw *draw = &scene->draws[i];
+        GLsizei instances = 0;
+        for (; i < scene->draw_count && is_same_call(draw, &scene->draws[i]); i++)
+            instances += culled[scene->draws[i].instance] ? 0 : 1;
+        if (instances == 0)
+            continue;
+        const struct gpu_material *material = &scene->materials[draw->material];
+        const bool special = material->transparent || (material->textured && !programs->alpha_matters_only);
+        const GLuint program = special ? programs->textured : programs->opaque;
+        if (program != current)
+            gl->UseProgram(program);
+        current = program;
+        bind_material(gl, program, material, special);
+        gl->BindVertexArray(draw->mesh->vertex_array);
+        gl->DrawElementsInstancedBaseInstance(GL_TRIANGLES, (GLsizei)draw->range->index_count, GL_UNSIGNED_INT,
+                                              (const void *)(uintptr_t)(draw->range->first_index * sizeof(uint32_t)),
+                                              instances, base);
+        base += (uint32_t)instances;
+    }
+    memory_free(culled);
+    return gl_check(gl, "drawing the scene");
+}
+
+void gpu_scene_depth_range(const struct gpu_scene *scene, const struct camera_block *camera, float range[2]) {
+    float low = FLT_MAX, high = -FLT_MAX;
+    for (uint32_t i = 0; i < scene->instance_count; i++) {
+        if (box_is_empty(&scene->bounds[i]) || (scene->flags[i] & PNB_INSTANCE_HIDDEN_FROM_CAMERA))
+            continue;
+        for (int corner = 0; corner < 8; corner++) {
+            const struct box *box = &scene->bounds[i];
+            const vec3 p = {(corner & 1) ? box->maximum[0] : box->minimum[0],
+                            (corner & 2) ? box->maximum[1] : box->minimum[1],
+                            (corner & 4) ? box->maximum[2] : box->minimum[2]};
+            const float depth = -glm_vec3_dot((float *)p, (float *)camera->axis_z);
+            low = depth < low ? depth : low;
+            high = depth > high ? depth : high;
+        }
+    }
+    /* A thousandth around, so that nothing is cut by rounding. */
+    range[0] = glm_max(range[0], low - 1e-3f * fabsf(low));
+    range[1] = glm_min(range[1], high + 1e-3f * fabsf(high));
+    if (!(range[0] < range[1]))
+        range[1] = range[0] + glm_max(1e-3f, 1e-3f * fabsf(range[0]));
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * The scene in OpenGL memory: meshes and textures keyed by content, so that each crosses once however often the host
+ * makes it, instances as one buffer, and the list of draws. */
+#ifndef PNB_GPU_SCENE_H
+#define PNB_GPU_SCENE_H
+
+#include "frame.h"
+
+struct gpu_scene;
+
+pnb_result gpu_scene_create(const struct gl *gl, struct gpu_scene **scene);
+void gpu_scene_destroy(struct gpu_scene **scene);
+
+/* Uploads what is new in the frame's scene, fills frame->casters, and frees what no frame used for a while. */
+pnb_result gpu_scene_update(struct gpu_scene *scene, struct frame *frame);
+
+/* Bytes of OpenGL memory it holds. */
+uint64_t gpu_scene_bytes(const struct gpu_scene *scene);
+
+/* Programs for opaque and for transparent or textured materials; uniforms of the pass are set beforehand. */
+struct draw_programs {
+    GLuint opaque, textured;
+    bool alpha_matters_only; /* depth passes: `textured` only where a material is not opaque */
+};
+
+/* Draws every instance inside the view volume of `clip` (relative world to clip space) that lacks the flag
+ * `hidden_by`. */
+pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hidden_by,
+                          const struct draw_programs *programs);
+
+/* Nearest and farthest distance along the camera's axis of the visible instances, within the clip planes. */
+void gpu_scene_depth_range(const struct gpu_scene *scene, const struct camera_block *camera, float range[2]);
+
+#endif

@@ -1,0 +1,256 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "renderer.h"
+#include "../gl/program.h"
+#include "../memory.h"
+#include "../passes/passes.h"
+
+#include <stdio.h>
+
+/* Shadow maps kept at once. More lights are handled in groups, each of which draws the G-buffer again. */
+#define SHADOW_MAP_BUDGET (512ull << 20)
+
+static pnb_result create_programs(struct renderer *renderer) {
+    const char *const textured = "#define TEXTURED\n#define TRANSPARENT\n";
+    const char *const perspective = "#define PERSPECTIVE\n";
+    const char *const both = "#define TEXTURED\n#define TRANSPARENT\n#define PERSPECTIVE\n";
+    const struct {
+        GLuint *program;
+        struct program_desc desc;
+    } list[] = {
+        {&renderer->gbuffer_programs[0], {"pass_gbuffer.vert", "pass_gbuffer.frag", NULL, NULL, NULL}},
+        {&renderer->gbuffer_programs[1], {"pass_gbuffer.vert", "pass_gbuffer.frag", NULL, NULL, textured}},
+        {&renderer->shadow_programs[0][0], {"pass_shadow_map.vert", "pass_shadow_map.frag", NULL, NULL, NULL}},
+        {&renderer->shadow_programs[0][1], {"pass_shadow_map.vert", "pass_shadow_map.frag", NULL, NULL, textured}},
+        {&renderer->shadow_programs[1][0], {"pass_shadow_map.vert", "pass_shadow_map.frag", NULL, NULL, perspective}},
+        {&renderer->shadow_programs[1][1], {"pass_shadow_map.vert", "pass_shadow_map.frag", NULL, NULL, both}},
+        {&renderer->min_max_program, {NULL, NULL, "pass_min_max.comp", NULL, NULL}},
+        {&renderer->bounds_program, {NULL, NULL, "pass_bounds.comp", NULL, NULL}},
+        {&renderer->base_program, {"pass_screen.vert", "pass_base.frag", NULL, NULL, NULL}},
+        {&renderer->shading_program, {"pass_screen.vert", "pass_shading.frag", NULL, NULL, NULL}},
+        {&renderer->resolve_program, {"pass_screen.vert", "pass_resolve.frag", NULL, NULL, NULL}},
+        {&renderer->reference_program, {"pass_screen.vert", "pass_reference.frag", NULL, NULL, NULL}},
+    };
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        pnb_result result = program_create(renderer->gl, &list[i].desc, list[i].program);
+        if (result != PNB_OK)
+            return result;
+    }
+    return PNB_OK;
+}
+
+pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
+    struct renderer *renderer = memory_array(1, sizeof *renderer);
+    if (!renderer)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    renderer->gl = gl;
+    timer_init(&renderer->timer, gl);
+    gl->GenFramebuffers(1, &renderer->framebuffer);
+    gl->GenVertexArrays(1, &renderer->empty_vertex_array);
+    GLuint *const buffers[] = {&renderer->camera_buffer, &renderer->light_buffer, &renderer->tap_buffer,
+                               &renderer->box_buffer};
+    for (int i = 0; i < 4; i++)
+        gl->GenBuffers(1, buffers[i]);
+    pnb_result result = gpu_scene_create(gl, &renderer->scene);
+    if (result == PNB_OK)
+        result = create_programs(renderer);
+    if (result == PNB_OK)
+        result = gl_check(gl, "renderer");
+    if (result != PNB_OK) {
+        renderer_destroy(&renderer);
+        return result;
+    }
+    *out = renderer;
+    return PNB_OK;
+}
+
+static void free_programs(struct renderer *renderer) {
+    const struct gl *gl = renderer->gl;
+    for (int i = 0; i < 2; i++) {
+        gl->DeleteProgram(renderer->gbuffer_programs[i]);
+        gl->DeleteProgram(renderer->shadow_programs[i][0]);
+        gl->DeleteProgram(renderer->shadow_programs[i][1]);
+    }
+    const GLuint programs[] = {renderer->min_max_program, renderer->bounds_program,  renderer->base_program,
+                               renderer->shading_program, renderer->resolve_program, renderer->reference_program};
+    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
+        gl->DeleteProgram(programs[i]);
+    for (int i = 0; i < MAX_TECHNIQUES; i++)
+        gl->DeleteProgram(renderer->visibility_programs[i].program);
+}
+
+void renderer_destroy(struct renderer **out) {
+    struct renderer *renderer = *out;
+    if (!renderer)
+        return;
+    const struct gl *gl = renderer->gl;
+    gpu_scene_destroy(&renderer->scene);
+    timer_free(&renderer->timer);
+    free_programs(renderer);
+    gl->DeleteFramebuffers(1, &renderer->framebuffer);
+    gl->DeleteVertexArrays(1, &renderer->empty_vertex_array);
+    const GLuint buffers[] = {renderer->camera_buffer, renderer->light_buffer, renderer->tap_buffer, renderer->box_buffer};
+    gl->DeleteBuffers(4, buffers);
+    struct gl_texture *const textures[] = {
+        &renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color, &renderer->gbuffer_z,
+        &renderer->visibility,    &renderer->combined,       &renderer->shadowed,      &renderer->unshadowed,
+        &renderer->normal,        &renderer->out_combined,   &renderer->out_shadow,    &renderer->out_normal};
+    for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
+        gl_texture_free(gl, textures[i]);
+    for (int i = 0; i < MAX_LIGHTS; i++)
+        gl_texture_free(gl, &renderer->light_shadows[i]);
+    memory_free(renderer);
+    *out = NULL;
+}
+
+void draw_screen(struct renderer *renderer) {
+    renderer->gl->BindVertexArray(renderer->empty_vertex_array);
+    renderer->gl->DrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+/* ---- One frame ---- */
+
+/* The first sample's G-buffer of the whole image: light views must not depend on the crop. */
+static pnb_result find_receivers(struct frame *frame) {
+    const struct settings *settings = frame->settings;
+    struct settings full = *settings;
+    full.crop[0] = full.crop[1] = 0;
+    full.crop[2] = full.width;
+    full.crop[3] = full.height;
+    frame->settings = &full;
+    frame->width = (int)full.width;
+    frame->height = (int)full.height;
+    camera_block_init(&frame->camera, &frame->scene->camera, &full, 0);
+    pnb_result result = pass_gbuffer(frame);
+    if (result == PNB_OK)
+        result = pass_bounds(frame);
+    frame->settings = settings;
+    frame->width = (int)settings->crop[2];
+    frame->height = (int)settings->crop[3];
+    return result;
+}
+
+static void fit_lights(struct frame *frame) {
+    for (uint32_t i = 0; i < frame->scene->light_count; i++) {
+        struct frame_light *light = &frame->lights[i];
+        light->source = &frame->scene->lights[i];
+        emitter_init(&light->emitter, light->source, frame->origin);
+        light_views_fit(&light->views, &light->emitter, frame->receivers, frame->receiver_count, frame->casters,
+                        frame->caster_count, (int)frame->settings->shadow_map_size);
+        if (!light->emitter.casts_shadow)
+            light->views.count = 0;
+    }
+}
+
+static uint64_t light_bytes(const struct frame *frame, const struct frame_light *light) {
+    const uint64_t side = frame->settings->shadow_map_size;
+    return side * side * 4 * 2 * (uint64_t)light->views.count;
+}
+
+static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *light) {
+    if (light->views.count == 0 || frame->settings->technique->draw)
+        return PNB_OK;
+    pnb_result result = pass_shadow_map(frame, &light->views, &light->shadow_map);
+    if (result == PNB_OK && (frame->settings->technique->needs & NEEDS_MIN_MAX))
+        result = pass_min_max(frame, &light->shadow_map, &light->min_max);
+    return result;
+}
+
+static void free_shadow_maps(struct frame *frame, struct frame_light *light) {
+    gl_texture_free(frame->gl, &light->shadow_map);
+    gl_texture_free(frame->gl, &light->min_max);
+}
+
+/* Progress: light by light of every sample. */
+static pnb_result report(struct frame *frame, uint32_t light) {
+    struct pnb_job *job = frame->job;
+    const uint32_t lights = frame->scene->light_count ? frame->scene->light_count : 1;
+    const uint32_t samples = frame->settings->samples;
+    char text[96];
+    snprintf(text, sizeof text, "Sample %u/%u, light %u/%u", frame->sample + 1, samples, light + 1, lights);
+    job_set_progress(job, (float)(frame->sample * lights + light) / (float)(samples * lights), frame->sample, text);
+    /* Wait for the work queued so far, so that a cancel is noticed soon and progress is true. */
+    frame->gl->Finish();
+    return job_is_cancelled(job) ? error_set(PNB_ERROR_CANCELLED, "the render was cancelled") : PNB_OK;
+}
+
+static pnb_result draw_light(struct frame *frame, uint32_t index) {
+    struct renderer *renderer = frame->renderer;
+    const struct frame_light *light = &frame->lights[index];
+    pnb_result result = report(frame, index);
+    if (result != PNB_OK)
+        return result;
+    result = gl_texture_ensure(frame->gl, &renderer->visibility, GL_RGBA32F, frame->width, frame->height, 0, 1);
+    if (result != PNB_OK)
+        return result;
+    light_block_upload(renderer, &light->emitter, &light->views);
+    if (frame->settings->technique->draw)
+        result = frame->settings->technique->draw(frame, light);
+    else
+        result = pass_visibility(frame, light);
+    if (result != PNB_OK)
+        return result;
+    light_block_upload(renderer, &light->emitter, &light->views);
+    return pass_shading(frame, index);
+}
+
+/* Every sample of the lights first .. last - 1, whose maps are in memory. */
+static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t last) {
+    pnb_result result = PNB_OK;
+    for (frame->sample = 0; frame->sample < frame->settings->samples && result == PNB_OK; frame->sample++) {
+        camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
+        result = pass_gbuffer(frame);
+        if (result == PNB_OK && first == 0)
+            result = pass_base(frame);
+        if (result == PNB_OK && first == 0 && frame->sample == 0)
+            result = pass_first_sample(frame);
+        for (uint32_t i = first; i < last && result == PNB_OK; i++)
+            result = draw_light(frame, i);
+    }
+    return result;
+}
+
+static pnb_result draw_frame(struct frame *frame) {
+    pnb_result result;
+    if ((result = gpu_scene_update(frame->renderer->scene, frame)) != PNB_OK ||
+        (result = find_receivers(frame)) != PNB_OK || (result = pass_clear_sums(frame)) != PNB_OK)
+        return result;
+    fit_lights(frame);
+    const uint32_t count = frame->scene->light_count;
+    for (uint32_t first = 0; (first < count || first == 0) && result == PNB_OK;) {
+        uint32_t last = first;
+        for (uint64_t bytes = 0; last < count && result == PNB_OK; last++) {
+            bytes += light_bytes(frame, &frame->lights[last]);
+            if (bytes > SHADOW_MAP_BUDGET && last > first)
+                break;
+            result = draw_shadow_maps(frame, &frame->lights[last]);
+        }
+        if (result == PNB_OK)
+            result = draw_samples(frame, first, last);
+        for (uint32_t i = first; i < last; i++)
+            free_shadow_maps(frame, &frame->lights[i]);
+        first = last > first ? last : first + 1;
+    }
+    return result == PNB_OK ? pass_resolve(frame) : result;
+}
+
+pnb_result renderer_run(struct renderer *renderer, struct pnb_job *job) {
+    struct frame *frame = memory_array(1, sizeof *frame);
+    if (!frame)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    frame->gl = renderer->gl;
+    frame->renderer = renderer;
+    frame->job = job;
+    frame->scene = job->scene;
+    frame->settings = &job->settings;
+    glm_vec3_copy((float *)&job->scene->camera.matrix[12], frame->origin);
+    pnb_result result = draw_frame(frame);
+    for (uint32_t i = 0; i < MAX_LIGHTS; i++)
+        free_shadow_maps(frame, &frame->lights[i]);
+    pnb_result timing = timer_collect(&renderer->timer, job);
+    memory_free(frame->receivers);
+    memory_free(frame->coarse_receivers);
+    memory_free(frame->casters);
+    memory_free(frame->first_depth);
+    memory_free(frame);
+    return result != PNB_OK ? result : timing;
+}

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "sampling.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979f
+#define GOLDEN_ANGLE 2.39996323f
+
+void square_to_disk(float point[2]) {
+    const float x = point[0], y = point[1];
+    if (x == 0.0f && y == 0.0f)
+        return;
+    const bool wide = fabsf(x) > fabsf(y);
+    const float radius = wide ? x : y;
+    const float angle = wide ? PI / 4.0f * (y / x) : PI / 2.0f - PI / 4.0f * (x / y);
+    point[0] = radius * cosf(angle);
+    point[1] = radius * sinf(angle);
+}
+
+static float wrap(float x) {
+    return x - floorf(x);
+}
+
+/* A disk: Vogel's spiral. A square: the lattice of the two-dimensional golden ratio (Roberts 2018), whose projections
+ * on both axes are even, so that straight edges get as many steps as there are points. */
+static void vogel_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
+    const float t = (float)turn;
+    if (disk) {
+        const float radius = sqrtf(((float)i + 0.5f) / (float)count);
+        const float angle = (float)i * GOLDEN_ANGLE + t * 2.0f * PI * 0.61803399f;
+        point[0] = radius * cosf(angle);
+        point[1] = radius * sinf(angle);
+        return;
+    }
+    const float n = (float)count;
+    point[0] = 2.0f * wrap(((float)i + 0.5f + 0.61803399f * t) / n) - 1.0f;
+    point[1] = 2.0f * wrap(((float)i + 0.5f) * 0.61803399f + 0.7548777f * t) - 1.0f;
+}
+
+static void grid_point(int i, int side, bool disk, float point[2]) {
+    point[0] = 2.0f * ((float)(i % side) + 0.5f) / (float)side - 1.0f;
+    point[1] = 2.0f * ((float)(i / side) + 0.5f) / (float)side - 1.0f;
+    if (disk)
+        square_to_disk(point);
+}
+
+int pattern_fill(enum pattern pattern, int count, bool disk, uint32_t turn, float points[][2]) {
+    const int side = (int)floorf(sqrtf((float)count) + 1e-3f);
+    if (pattern == PATTERN_GRID)
+        count = side * side;
+    for (int i = 0; i < count; i++) {
+        if (pattern == PATTERN_GRID)
+            grid_point(i, side, disk, points[i]);
+        else
+            vogel_point(i, count, disk, turn, points[i]);
+    }
+    if (count % 2 == 1)
+        points[count][0] = points[count][1] = 1e30f;
+    return count;
+}
+
+void cell_point(int i, int j, int n, bool disk, float point[2]) {
+    const float side = (float)n;
+    point[0] = 2.0f * ((float)i + ((float)j + 0.5f) / side) / side - 1.0f;
+    point[1] = 2.0f * ((float)j + ((float)i + 0.5f) / side) / side - 1.0f;
+    if (disk)
+        square_to_disk(point);
+}
+
+/* Blackman-Harris window over [-0.5, 0.5]. */
+static float blackman_harris(float x) {
+    const float t = 2.0f * PI * (x + 0.5f);
+    return 0.35875f - 0.48829f * cosf(t) + 0.14128f * cosf(2.0f * t) - 0.01168f * cosf(3.0f * t);
+}
+
+/* Where the window's integral reaches the share u, by its cumulative sum. */
+static float filter_inverse(float u) {
+    enum { STEPS = 256 };
+    float total = 0.0f, sum = 0.0f;
+    for (int i = 0; i < STEPS; i++)
+        total += blackman_harris(((float)i + 0.5f) / STEPS - 0.5f);
+    for (int i = 0; i < STEPS; i++) {
+        const float part = blackman_harris(((float)i + 0.5f) / STEPS - 0.5f) / total;
+        if (sum + part >= u)
+            return ((float)i + (u - sum) / part) / STEPS - 0.5f;
+        sum += part;
+    }
+    return 0.5f;
+}
+
+void pixel_sample(uint32_t index, uint32_t count, float filter_width, float offset[2]) {
+    offset[0] = offset[1] = 0.0f;
+    if (count <= 1)
+        return;
+    float point[2];
+    vogel_point((int)index, (int)count, false, 0, point);
+    /* A Blackman-Harris filter of width w is the window over [-w, w] (Cycles' convention). */
+    for (int axis = 0; axis < 2; axis++)
+        offset[axis] = filter_inverse(0.5f * point[axis] + 0.5f) * 2.0f * filter_width;
+}

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "settings.h"
+#include "../techniques/technique.h"
+
+#include <math.h>
+#include <string.h>
+
+static uint32_t or_default(uint32_t value, uint32_t fallback) {
+    return value ? value : fallback;
+}
+
+static pnb_result check_range(const char *name, uint32_t value, uint32_t minimum, uint32_t maximum) {
+    if (value >= minimum && value <= maximum)
+        return PNB_OK;
+    return error_set(PNB_ERROR_INVALID_ARGUMENT, "%s is %u, allowed are %u to %u", name, value, minimum, maximum);
+}
+
+/* Sizes beyond the context's limit are a matter of the machine, not of the call. */
+static pnb_result check_size(const char *name, uint32_t value, uint32_t minimum, uint32_t limit) {
+    if (value > limit)
+        return error_set(PNB_ERROR_UNSUPPORTED, "%s is %u, this OpenGL allows at most %u", name, value, limit);
+    return check_range(name, value, minimum, limit);
+}
+
+static pnb_result resolve_crop(const pnb_settings *from, struct settings *to) {
+    memcpy(to->crop, from->crop, sizeof to->crop);
+    if (to->crop[2] == 0) {
+        to->crop[0] = to->crop[1] = 0;
+        to->crop[2] = to->width;
+        to->crop[3] = to->height;
+    }
+    const uint32_t *c = to->crop;
+    if (c[3] == 0 || c[0] >= to->width || c[2] > to->width - c[0] || c[1] >= to->height || c[3] > to->height - c[1])
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "crop %u,%u %u x %u does not lie in the %u x %u image", c[0], c[1],
+                         c[2], c[3], to->width, to->height);
+    return PNB_OK;
+}
+
+static pnb_result resolve_value(const pnb_value *from, struct messages *messages, struct settings *to) {
+    const struct technique *technique = to->technique;
+    const int index = from->name ? technique_parameter(technique, from->name) : -1;
+    if (index < 0)
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "technique %s has no parameter '%s'", technique->id,
+                         from->name ? from->name : "(null)");
+    const struct parameter *parameter = &technique->parameters[index];
+    if (!isfinite(from->value))
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "parameter '%s' is not a finite number", from->name);
+    double value = parameter->type == PNB_FLOAT ? from->value : round(from->value);
+    const double clamped = fmin(fmax(value, parameter->minimum), parameter->maximum);
+    if (clamped != value)
+        messages_add(messages, "%s: parameter '%s' is %g, taken as %g", technique->id, from->name, value, clamped);
+    to->parameters[index] = clamped;
+    return PNB_OK;
+}
+
+static pnb_result resolve_technique(const pnb_settings *from, struct messages *messages, struct settings *to) {
+    const char *id = from->technique ? from->technique : "PCSS";
+    to->technique = technique_find(id);
+    if (!to->technique)
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "there is no technique '%s'", id);
+    for (int i = 0; to->technique->parameters[i].name; i++)
+        to->parameters[i] = to->technique->parameters[i].default_value;
+    if (from->value_count && !from->values)
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "settings: values is NULL");
+    for (uint32_t i = 0; i < from->value_count; i++) {
+        pnb_result result = resolve_value(&from->values[i], messages, to);
+        if (result != PNB_OK)
+            return result;
+    }
+    return PNB_OK;
+}
+
+pnb_result settings_resolve(const pnb_settings *from, uint32_t max_texture_size, struct messages *messages,
+                            struct settings *to) {
+    pnb_result result = CHECK_STRUCT(from, pnb_settings);
+    if (result != PNB_OK)
+        return result;
+    *to = (struct settings){
+        .flags = from->flags,
+        .width = from->width,
+        .height = from->height,
+        .samples = or_default(from->samples, 1),
+        .filter_width = from->filter_width > 0.0f && from->filter_width < 100.0f ? from->filter_width : 1.5f,
+        .shadow_map_size = or_default(from->shadow_map_size, 1024),
+        .light_samples = or_default(from->light_samples, 16),
+        .passes = or_default(from->passes, PNB_PASS_COMBINED | PNB_PASS_DEPTH | PNB_PASS_NORMAL | PNB_PASS_SHADOW),
+    };
+    if ((result = check_size("width", to->width, 1, max_texture_size)) != PNB_OK ||
+        (result = check_size("height", to->height, 1, max_texture_size)) != PNB_OK ||
+        (result = check_size("shadow_map_size", to->shadow_map_size, 16, max_texture_size)) != PNB_OK ||
+        (result = check_range("samples", to->samples, 1, 4096)) != PNB_OK ||
+        (result = check_range("light_samples", to->light_samples, 1, 64)) != PNB_OK ||
+        (result = resolve_crop(from, to)) != PNB_OK)
+        return result;
+    return resolve_technique(from, messages, to);
+}

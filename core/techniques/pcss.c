@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "technique.h"
+
+enum { PATTERN, BLOCKER_SAMPLES, FILTER_SAMPLES, SEARCH_REDUCTION, MIN_MAX };
+
+static const char *const patterns[] = {"VOGEL", "GRID", NULL};
+
+static const struct parameter parameters[] = {
+    [PATTERN] = {.name = "pattern",
+                 .label = "Pattern",
+                 .description = "VOGEL: evenly spread points whose projections never coincide, free of bands. GRID: the "
+                                "regular grid of the papers, the largest square number of points within the count",
+                 .unit = "",
+                 .type = PNB_ENUM,
+                 .maximum = 1,
+                 .default_value = PATTERN_VOGEL,
+                 .items = patterns},
+    [BLOCKER_SAMPLES] = {.name = "blocker_samples",
+                         .label = "Blocker Samples",
+                         .description = "Points of the blocker search; too few miss thin casters (papers: 9 x 9 = 81)",
+                         .unit = "",
+                         .type = PNB_INT,
+                         .minimum = 1,
+                         .maximum = MAX_TAPS,
+                         .default_value = 32},
+    [FILTER_SAMPLES] = {.name = "filter_samples",
+                        .label = "Filter Samples",
+                        .description = "Points of the penumbra filter; each is one shade of grey (papers: 15 x 15 = 225)",
+                        .unit = "",
+                        .type = PNB_INT,
+                        .minimum = 1,
+                        .maximum = MAX_TAPS,
+                        .default_value = 64},
+    [SEARCH_REDUCTION] = {.name = "search_reduction",
+                          .label = "Search Reduction",
+                          .description = "Times the search area is shrunk to what the nearest blocker in it needs; 0: "
+                                         "from the near plane, as in the paper",
+                          .unit = "",
+                          .type = PNB_INT,
+                          .maximum = 4,
+                          .default_value = 2},
+    [MIN_MAX] = {.name = "min_max",
+                 .label = "Min-Max Skip",
+                 .description = "Skips pixels that the min-max pyramid shows to be fully lit or fully shadowed; faster, "
+                                "same image",
+                 .unit = "",
+                 .type = PNB_BOOL,
+                 .maximum = 1,
+                 .default_value = 1},
+    {0}};
+
+static void pcss_taps(const double *values, bool ellipse, uint32_t sample, struct taps *taps) {
+    const enum pattern pattern = (enum pattern)values[PATTERN];
+    taps->search_count = pattern_fill(pattern, (int)values[BLOCKER_SAMPLES], ellipse, sample, taps->search);
+    taps->filter_count = pattern_fill(pattern, (int)values[FILTER_SAMPLES], ellipse, sample, taps->filter);
+}
+
+const struct technique technique_pcss = {
+    .id = "PCSS",
+    .label = "Percentage-Closer Soft Shadows",
+    .description = "Penumbrae as wide as the light's size and the average blocker make them",
+    .paper = "R. Fernando, Percentage-Closer Soft Shadows, 2005",
+    .parameters = parameters,
+    .needs = NEEDS_MIN_MAX,
+    .shader = "tech_pcss.glsl",
+    .taps = pcss_taps,
+};

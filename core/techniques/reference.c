@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Ground truth: the average of hard shadows from N x N points of the emitter. Every other technique is measured
+ * against it, and it is measured against a path tracer. */
+#include "../gl/program.h"
+#include "../passes/passes.h"
+#include "technique.h"
+
+#include <math.h>
+
+enum { WEIGHTS };
+
+static const char *const weightings[] = {"IRRADIANCE", "UNIFORM", NULL};
+
+static const struct parameter parameters[] = {
+    [WEIGHTS] = {.name = "weights",
+                 .label = "Weights",
+                 .description = "IRRADIANCE: a point of the light counts as much as it lights the surface, as in nature. "
+                                "UNIFORM: all count the same, as in the papers",
+                 .unit = "",
+                 .type = PNB_ENUM,
+                 .maximum = 1,
+                 .items = weightings},
+    {0}};
+
+/* A point-like emitter at one point of `emitter`, and the direction its surface faces there (w = 0: all). */
+static void emitter_at(const struct emitter *emitter, int i, int j, int n, struct emitter *point, vec4 normal) {
+    float s[2];
+    *point = *emitter;
+    glm_vec4_zero(normal);
+    if (emitter->type == PNB_LIGHT_AREA) {
+        cell_point(i, j, n, emitter->ellipse, s);
+        glm_vec3_muladds((float *)emitter->half_u, s[0], point->position);
+        glm_vec3_muladds((float *)emitter->half_v, s[1], point->position);
+        glm_vec3_zero(point->half_u);
+        glm_vec3_zero(point->half_v);
+        glm_vec4((float *)emitter->frame[2], 1.0f, normal);
+    } else if (emitter->type == PNB_LIGHT_SUN) {
+        cell_point(i, j, n, true, s);
+        vec3 *frame = point->frame;
+        glm_vec3_muladds((float *)emitter->frame[0], s[0] * emitter->tan_half_angle, frame[2]);
+        glm_vec3_muladds((float *)emitter->frame[1], s[1] * emitter->tan_half_angle, frame[2]);
+        glm_vec3_normalize(frame[2]);
+        glm_vec3_crossn(frame[1], frame[2], frame[0]);
+        glm_vec3_cross(frame[2], frame[0], frame[1]);
+        point->tan_half_angle = 0.0f;
+    } else if (emitter->radius > 0.0f) {
+        /* A sphere, evenly covered (Lambert's cylindrical projection); each receiver counts the side it sees. */
+        cell_point(i, j, n, false, s);
+        const float across = sqrtf(fmaxf(1.0f - s[0] * s[0], 0.0f)), angle = (float)M_PI * s[1];
+        const vec3 direction = {across * cosf(angle), across * sinf(angle), s[0]};
+        glm_vec3_muladds((float *)direction, emitter->radius, point->position);
+        point->radius = 0.0f;
+        glm_vec4((float *)direction, 1.0f, normal);
+    }
+}
+
+/* Adds one light sample to the visibility sums. */
+static pnb_result add_sample(struct frame *frame, const struct light_views *views, const vec4 normal,
+                             const struct gl_texture *map) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = frame->gl;
+    const GLuint program = renderer->reference_program;
+    pnb_result result = timer_begin(&renderer->timer, "Visibility");
+    const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1};
+    if (result != PNB_OK || (result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
+        return result;
+    gl->Disable(GL_DEPTH_TEST);
+    gl->Enable(GL_BLEND);
+    gl->BlendFunc(GL_ONE, GL_ONE);
+    gl->UseProgram(program);
+    bind_gbuffer(renderer, program);
+    if (views->count > 0)
+        gl_texture_bind(gl, map, 3);
+    program_set_int(gl, program, "shadow_map", 3);
+    program_set_vec4(gl, program, "emitter_normal", normal);
+    program_set_int(gl, program, "uniform_weights", frame->settings->parameters[WEIGHTS] > 0.0);
+    draw_screen(renderer);
+    timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
+    return gl_check(gl, "reference visibility");
+}
+
+static pnb_result draw_sample(struct frame *frame, const struct emitter *emitter, int i, int j, int n,
+                              struct gl_texture *map) {
+    struct emitter point;
+    struct light_views views;
+    vec4 normal;
+    emitter_at(emitter, i, j, n, &point, normal);
+    light_views_fit(&views, &point, frame->coarse_receivers, frame->coarse_receiver_count, frame->casters,
+                    frame->caster_count, (int)frame->settings->shadow_map_size);
+    pnb_result result = PNB_OK;
+    if (views.count > 0 && emitter->casts_shadow)
+        result = pass_shadow_map(frame, &views, map);
+    if (result != PNB_OK)
+        return result;
+    light_block_upload(frame->renderer, &point, &views);
+    return add_sample(frame, &views, normal, map);
+}
+
+static pnb_result reference_draw(struct frame *frame, const struct frame_light *light) {
+    const struct gl *gl = frame->gl;
+    const struct gl_target target = {.colors = {&frame->renderer->visibility}, .color_count = 1};
+    pnb_result result = gl_target_bind(gl, frame->renderer->framebuffer, &target);
+    const float zero[4] = {0, 0, 0, 0};
+    if (result != PNB_OK)
+        return result;
+    gl->ClearBufferfv(GL_COLOR, 0, zero);
+    struct gl_texture map = {0};
+    const int n = (int)frame->settings->light_samples;
+    for (int i = 0; i < n * n && result == PNB_OK; i++) {
+        result = draw_sample(frame, &light->emitter, i % n, i / n, n, &map);
+        if (result == PNB_OK && i % 8 == 7) {
+            gl->Finish();
+            if (job_is_cancelled(frame->job))
+                result = error_set(PNB_ERROR_CANCELLED, "the render was cancelled");
+        }
+    }
+    gl_texture_free(gl, &map);
+    return result;
+}
+
+const struct technique technique_reference = {
+    .id = "REFERENCE",
+    .label = "Reference",
+    .description = "Ground truth: hard shadows from many points of each light, averaged",
+    .paper = "P. Heckbert, M. Herf, Simulating Soft Shadows with Graphics Hardware, 1997",
+    .parameters = parameters,
+    .draw = reference_draw,
+};

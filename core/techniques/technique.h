@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * A technique is one row of techniques[] (table.c), one C file with its parameters and one GLSL file with
+ * `vec3 technique_visibility(receiver)`. The row is all there is to know: validation, user interfaces, the tool, the
+ * documents and the tests are driven by it. */
+#ifndef PNB_TECHNIQUE_H
+#define PNB_TECHNIQUE_H
+
+#include "../render/frame.h"
+
+struct parameter {
+    const char *name, *label, *description, *unit;
+    pnb_parameter_type type;
+    double minimum, maximum, default_value;
+    const char *const *items; /* ENUM: identifiers, NULL-terminated */
+};
+
+/* What the shared passes must prepare of each shadow map before the technique's visibility pass. */
+enum technique_needs { NEEDS_MIN_MAX = 1 };
+
+struct technique {
+    const char *id, *label, *description, *paper;
+    const struct parameter *parameters; /* ends with a NULL name; each is a uniform `p_<name>` of the shader */
+    uint32_t needs;                     /* enum technique_needs */
+    const char *shader;                 /* file of technique_visibility; NULL with `draw` */
+    /* Optional: sample points for the shader's taps (common_taps.glsl) for a light whose emitter is elliptic or not;
+     * sample: index of the anti-aliasing sample. */
+    void (*taps)(const double *parameters, bool ellipse, uint32_t sample, struct taps *taps);
+    /* Optional: draws visibility itself instead of shadow maps and one visibility pass. */
+    pnb_result (*draw)(struct frame *frame, const struct frame_light *light);
+};
+
+extern const struct technique *const techniques[]; /* ends with NULL */
+
+/* By identifier, in any case; NULL if there is none. */
+const struct technique *technique_find(const char *id);
+/* Index of a parameter by name, -1 if there is none. */
+int technique_parameter(const struct technique *technique, const char *name);
+
+#endif

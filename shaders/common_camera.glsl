@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera of one sub-pixel sample (frame.h: struct camera_block) and the G-buffer it fills.
+// Relative world space has its origin at the camera.
+
+layout(std140, binding = 0) uniform camera_block {
+    vec4 axis_x, axis_y, axis_z; // camera axes; it looks along -axis_z
+    vec4 window;                 // left, bottom, width, height of the full image at distance 1 or in metres
+    vec4 image;                  // full width and height in pixels, lower left pixel of the crop
+    float perspective;           // 1 or 0
+    float sample_index, sample_count;
+    float padding;
+} camera;
+
+// gbuffer_depth: metres along the camera axis, 0 = background.
+// gbuffer_normal: octahedral shading normal (xy) and geometric normal (zw); both face the camera.
+// gbuffer_color: base colour, and 1 = receives shadows, 0.5 = does not, 0 = background.
+
+vec2 octahedral_encode(vec3 n) {
+    n /= abs(n.x) + abs(n.y) + abs(n.z);
+    vec2 folded = (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+    return n.z >= 0.0 ? n.xy : folded;
+}
+
+vec3 octahedral_decode(vec2 e) {
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    float fold = max(-n.z, 0.0);
+    n.x += n.x >= 0.0 ? -fold : fold;
+    n.y += n.y >= 0.0 ? -fold : fold;
+    return normalize(n);
+}
+
+// Full-image pixel coordinate of a fragment of the crop.
+vec2 camera_pixel(vec2 fragment) {
+    return fragment + camera.image.zw;
+}
+
+vec3 camera_position(vec2 fragment, float depth) {
+    vec2 p = camera.window.xy + camera_pixel(fragment) / camera.image.xy * camera.window.zw;
+    vec3 across = p.x * camera.axis_x.xyz + p.y * camera.axis_y.xyz;
+    return camera.perspective != 0.0 ? depth * (across - camera.axis_z.xyz) : across - depth * camera.axis_z.xyz;
+}

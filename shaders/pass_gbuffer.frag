@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "common_camera.glsl"
+#include "common_material.glsl"
+
+in vec3 position;
+in vec3 normal;
+in vec2 uv;
+flat in float receives;
+
+layout(location = 0) out float out_depth;
+layout(location = 1) out vec4 out_normal;
+layout(location = 2) out vec4 out_color;
+
+// Random number of a pixel of the full image (Jarzynski and Olano 2020, PCG).
+float pixel_random(uvec2 pixel) {
+    uint v = pixel.x * 1664525u + pixel.y * 22695477u + 1013904223u;
+    v = ((v >> ((v >> 28u) + 4u)) ^ v) * 277803737u;
+    return float((v >> 22u) ^ v) / 4294967296.0;
+}
+
+void main() {
+    vec4 color = material_color(uv);
+#ifdef TRANSPARENT
+    // Stochastic transparency, stratified over the samples of the pixel; a single sample cuts at one half.
+    float jitter = camera.sample_count > 1.0 ? pixel_random(uvec2(camera_pixel(gl_FragCoord.xy))) : 0.5;
+    if (color.a < fract(jitter + camera.sample_index * 0.61803399) + 1e-6)
+        discard;
+#endif
+    // The triangle's own plane, seen from its visible side; a shading normal must not leave that side.
+    vec3 geometric = cross(dFdx(position), dFdy(position));
+    vec3 to_camera = camera.perspective != 0.0 ? -position : camera.axis_z.xyz;
+    geometric = dot(geometric, to_camera) < 0.0 ? -geometric : geometric;
+    geometric = dot(geometric, geometric) > 0.0 ? normalize(geometric) : normalize(to_camera);
+    vec3 shading = dot(normal, normal) > 0.0 ? normalize(normal) : geometric;
+    if (dot(shading, geometric) < 0.0)
+        shading = -shading;
+    out_depth = -dot(position, camera.axis_z.xyz);
+    out_normal = vec4(octahedral_encode(shading), octahedral_encode(geometric));
+    out_color = vec4(min(color.rgb, vec3(65504.0)), receives);
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One light sample of REFERENCE: the emitter shrunk to one of its points. Adds up visibility and weight; the weight is
+// what the point contributes to the unshadowed irradiance.
+#include "common_camera.glsl"
+#include "common_light.glsl"
+#include "common_shadow.glsl"
+
+uniform sampler2D gbuffer_depth, gbuffer_normal, gbuffer_color;
+uniform vec4 emitter_normal; // xyz: of the emitter's surface at the sample; w: 0 = shines equally everywhere
+uniform int uniform_weights; // 1: every sample counts the same, as in the papers
+
+layout(location = 0) out vec4 out_visibility;
+
+float sample_weight(vec3 position, vec3 normal) {
+    if (light_type() == SUN)
+        return max(dot(normal, -light.frame_z.xyz), 0.0);
+    vec3 to_light = light.position.xyz - position;
+    float d2 = dot(to_light, to_light);
+    float facing = emitter_normal.w != 0.0 ? max(-dot(to_light, emitter_normal.xyz), 0.0) : sqrt(d2);
+    return max(dot(normal, to_light), 0.0) * facing / max(d2 * d2, 1e-20);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float depth = texelFetch(gbuffer_depth, pixel, 0).r;
+    out_visibility = vec4(0.0);
+    if (depth == 0.0)
+        return;
+    vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
+    vec3 position = camera_position(gl_FragCoord.xy, depth);
+    float weight = sample_weight(position, octahedral_decode(normals.xy));
+    if (weight <= 0.0)
+        return;
+    if (uniform_weights == 1)
+        weight = 1.0;
+    out_visibility = vec4(weight);
+    int layer = light_layer(position);
+    if (layer < 0 || light.casts_shadow == 0.0 || texelFetch(gbuffer_color, pixel, 0).a < 1.0)
+        return;
+    receiver r = receiver_create(position, octahedral_decode(normals.zw), layer);
+    out_visibility.rgb *= 1.0 - blocked_bilinear(r, r.q);
+}

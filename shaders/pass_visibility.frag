@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Visibility of one light at every pixel, by the technique's function `vec3 technique_visibility(receiver r)`.
+// Output: rgb = visibility times weight, a = weight; a = 0 where the light does not reach.
+#include "common_camera.glsl"
+#include "common_light.glsl"
+#include "common_shadow.glsl"
+#include "technique"
+
+uniform sampler2D gbuffer_depth, gbuffer_normal, gbuffer_color;
+
+layout(location = 0) out vec4 out_visibility;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float depth = texelFetch(gbuffer_depth, pixel, 0).r;
+    out_visibility = vec4(0.0);
+    if (depth == 0.0)
+        return;
+    vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
+    vec3 position = camera_position(gl_FragCoord.xy, depth);
+    if (!light_reaches(position, octahedral_decode(normals.xy)))
+        return;
+    out_visibility = vec4(1.0);
+    int layer = light_layer(position);
+    if (layer < 0 || light.casts_shadow == 0.0 || texelFetch(gbuffer_color, pixel, 0).a < 1.0)
+        return;
+    receiver r = receiver_create(position, octahedral_decode(normals.zw), layer);
+    out_visibility.rgb = technique_visibility(r);
+}
