@@ -11,8 +11,8 @@
 static atomic_int_fast64_t live_blocks;
 static atomic_uint_fast64_t allocations_until_failure;
 
-void memory_fail_at(uint64_t n) {
-    atomic_store(&allocations_until_failure, n);
+uint64_t memory_fail_at(uint64_t n) {
+    return atomic_exchange(&allocations_until_failure, n);
 }
 
 int64_t memory_live_blocks(void) {

@@ -15,8 +15,10 @@ void *memory_resize(void *block, size_t count, size_t size);
 char *memory_string(const char *text, const char *fallback);
 void memory_free(void *block);
 
-/* Test hooks. The n-th allocation from now fails (1: the next), once; 0: none. Live allocations of the process. */
-void memory_fail_at(uint64_t n);
+/* Test hooks. The n-th allocation from now fails (1: the next), once; 0: none. Returns the n that was left of the call
+ * before, 0 if that one has failed. */
+uint64_t memory_fail_at(uint64_t n);
+/* Live allocations of the process. */
 int64_t memory_live_blocks(void);
 
 #endif

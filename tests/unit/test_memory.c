@@ -103,8 +103,8 @@ static void only_the_nth_fails(void **state) {
     for (size_t i = 0; i < 4; ++i) {
         memory_free(blocks[i]);
     }
-    memory_fail_at(1);
-    memory_fail_at(0);
+    assert_int_equal(memory_fail_at(2), 0);
+    assert_int_equal(memory_fail_at(0), 2);
     void *block = memory_array(1, 1);
     assert_non_null(block);
     memory_free(block);
