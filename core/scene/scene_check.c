@@ -39,7 +39,7 @@ static pnb_result check_instance(const pnb_instance *instance, uint32_t index) {
 }
 
 static pnb_result check_light(const pnb_light *light, uint32_t index) {
-    const uint32_t known = PNB_LIGHT_NO_SHADOW;
+    const uint32_t known = PNB_LIGHT_NO_SHADOW | PNB_LIGHT_COSINE_SPOT;
     pnb_result result = check_size("light", index, light->struct_size, sizeof *light);
     if (result != PNB_OK) {
         return result;
