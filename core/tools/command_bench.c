@@ -361,6 +361,8 @@ int command_bench(int count, char **arguments) {
     int code = parse_options(count, arguments, &options);
     if (code)
         return code < 0 ? EXIT_OK : code;
+    if (options.json && !output_check(options.json))
+        return EXIT_RENDER;
     struct replay replay;
     code = replay_open(&replay, options.capture, &options.replay);
     if (code == EXIT_OK && options.technique_count == 0)

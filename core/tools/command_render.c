@@ -253,7 +253,8 @@ static int render(const struct render_options *options, struct replay *replay, c
     pnb_job *job = NULL;
     bool good = times && render_repeatedly(replay, settings, repeat, times, &job, &different);
     if (good) {
-        print_messages(job);
+        if (!options->replay.verbose) /* the log has shown them */
+            print_messages(job);
         good = write_job(options, job);
     }
     if (good) {
@@ -299,6 +300,8 @@ int command_render(int count, char **arguments) {
         return EXIT_USAGE;
     if (options.technique && !parse_technique("-t", options.technique, &technique))
         return EXIT_USAGE;
+    if (!output_check(options.output))
+        return EXIT_RENDER;
 
     struct replay replay;
     pnb_value values[MAX_VALUES];

@@ -7,6 +7,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+bool output_check(const char *path) {
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    bool good = folder && access(folder, W_OK | X_OK) == 0;
+    if (!good)
+        tool_error("cannot write %s: %s", path, strerror(errno));
+    free(folder);
+    return good;
+}
+
 bool output_begin(struct output *output, const char *path) {
     output->path = path;
     if (asprintf(&output->temporary, "%s.XXXXXX", path) < 0) {

@@ -10,6 +10,9 @@ struct output {
     char *temporary; /* what the writer writes to */
 };
 
+/* Whether a file could be created there, so that a long render does not end in vain; reported if not. */
+bool output_check(const char *path);
+
 /* Creates the temporary file. `path` must outlive the output. */
 bool output_begin(struct output *output, const char *path);
 /* Renames it to the path if `complete`, else removes it. False if anything failed. */
