@@ -1,8 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "backend.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+/* With less, llvmpipe waits for ever for a thread it could not start, or LLVM aborts the process: both were seen with
+ * up to 450 MiB. */
+#define MIN_ADDRESS_SPACE ((uint64_t)768 << 20)
 
 pnb_result backend_choose(const char *name, struct backend_choice *choice) {
     const char *source = "backend";
@@ -155,14 +162,46 @@ static void report_add(struct backend_report *report, const struct candidate *ca
     report->hardware_failed = report->hardware_failed || candidate->is_hardware;
 }
 
+/* Bytes of address space in use, or 0. */
+static uint64_t used_address_space(void) {
+    unsigned long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file) {
+        if (fscanf(file, "%lu", &pages) != 1) {
+            pages = 0;
+        }
+        fclose(file);
+    }
+    return pages * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+pnb_result backend_check_address_space(void) {
+    struct rlimit limit;
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
+        return PNB_OK;
+    }
+    uint64_t used = used_address_space();
+    uint64_t left = limit.rlim_cur > used ? limit.rlim_cur - used : 0;
+    if (left < MIN_ADDRESS_SPACE) {
+        return error_set(PNB_ERROR_OUT_OF_MEMORY,
+                         "the limit on address space (ulimit -v) leaves %u MiB of memory, OpenGL needs %u",
+                         (unsigned)(left >> 20), (unsigned)(MIN_ADDRESS_SPACE >> 20));
+    }
+    return PNB_OK;
+}
+
 pnb_result backend_open(const struct backend_choice *choice, const struct context_options *options,
                         struct backend *backend, struct backend_report *report) {
     struct ladder ladder;
+    pnb_result result = backend_check_address_space();
+    if (result != PNB_OK) {
+        return result;
+    }
     ladder_list(choice, &ladder);
     *report = (struct backend_report){0};
     bool too_old = false;
     for (uint32_t i = 0; i < ladder.count; ++i) {
-        pnb_result result = backend_try(&ladder.candidates[i], options, backend);
+        result = backend_try(&ladder.candidates[i], options, backend);
         if (result == PNB_OK || result == PNB_ERROR_OUT_OF_MEMORY) {
             return result; /* the next backend would need the memory as well */
         }

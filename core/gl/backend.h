@@ -64,6 +64,8 @@ struct backend_report {
     bool hardware_failed;
 };
 
+/* OUT_OF_MEMORY where drivers are known to hang or abort for lack of it. */
+pnb_result backend_check_address_space(void);
 /* Opens the first backend that works. On failure the message lists every attempt. */
 pnb_result backend_open(const struct backend_choice *choice, const struct context_options *options,
                         struct backend *backend, struct backend_report *report);

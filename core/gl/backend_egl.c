@@ -267,13 +267,15 @@ static pnb_result query_devices(const struct egl *egl, EGLDeviceEXT *devices, EG
         *(void **)&query = extension_function(egl, "EGL_EXT_device_base", "eglQueryDevicesEXT");
     }
     if (!query || !has_extension(egl->client_extensions, "EGL_EXT_platform_device")) {
-        return error_set(PNB_ERROR_NO_BACKEND, "EGL lacks EGL_EXT_device_enumeration or EGL_EXT_platform_device");
+        return error_set(
+            PNB_ERROR_NO_BACKEND,
+            "EGL lacks EGL_EXT_device_enumeration or EGL_EXT_platform_device (is a driver in egl_vendor.d?)");
     }
     if (!query(MAX_DEVICES, devices, count)) {
         return egl_fail(egl, "eglQueryDevicesEXT");
     }
     if (*count <= 0) {
-        return error_set(PNB_ERROR_NO_BACKEND, "EGL has no devices (are the driver's files in egl_vendor.d?)");
+        return error_set(PNB_ERROR_NO_BACKEND, "EGL has no devices (is a driver in egl_vendor.d?)");
     }
     return PNB_OK;
 }

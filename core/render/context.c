@@ -154,7 +154,7 @@ static pnb_result run(pnb_context *context, struct pnb_job *job) {
     return result;
 }
 
-static void run_and_log(pnb_context *context, struct pnb_job *job) {
+static pnb_result run_and_log(pnb_context *context, struct pnb_job *job) {
     pnb_result result = run(context, job);
     char error[ERROR_TEXT_SIZE]; /* what the host does in its log function must not replace it */
     text_format(error, sizeof error, "%s", pnb_last_error());
@@ -165,7 +165,7 @@ static void run_and_log(pnb_context *context, struct pnb_job *job) {
         context_log(context, PNB_LOG_ERROR, "%s", error);
         error_set(result, "%s", error);
     }
-    job_finish(job, result);
+    return result;
 }
 
 /* The next job, or NULL when the context closes and its queue is empty. */
@@ -184,12 +184,10 @@ static struct pnb_job *next_job(pnb_context *context) {
     return job;
 }
 
-static void release_running(pnb_context *context) {
+static void forget_running(pnb_context *context) {
     pthread_mutex_lock(&context->lock);
-    struct pnb_job *job = context->running;
     context->running = NULL;
     pthread_mutex_unlock(&context->lock);
-    job_release(job);
 }
 
 static void *gl_thread(void *user) {
@@ -201,10 +199,9 @@ static void *gl_thread(void *user) {
         return NULL;
     }
     for (struct pnb_job *job = next_job(context); job; job = next_job(context)) {
-        if (job_begin(job)) {
-            run_and_log(context, job);
-        }
-        release_running(context);
+        result = job_begin(job) ? run_and_log(context, job) : PNB_ERROR_CANCELLED;
+        forget_running(context);
+        job_finish(job, result);
     }
     close_gl(context);
     return NULL;

@@ -48,13 +48,18 @@ static void job_free(struct pnb_job *job) {
     memory_free(job);
 }
 
-void job_release(struct pnb_job *job) {
-    pthread_mutex_lock(&job->lock);
+/* Gives back one reference and unlocks the job, which must be locked. */
+static void release_locked(struct pnb_job *job) {
     uint32_t left = --job->references;
     pthread_mutex_unlock(&job->lock);
     if (left == 0) {
         job_free(job);
     }
+}
+
+static void release(struct pnb_job *job) {
+    pthread_mutex_lock(&job->lock);
+    release_locked(job);
 }
 
 static bool job_is_done(const pnb_job *job) {
@@ -85,8 +90,8 @@ bool job_begin(struct pnb_job *job) {
     return begins;
 }
 
-void job_finish(struct pnb_job *job, pnb_result result) {
-    pthread_mutex_lock(&job->lock);
+/* With the job's lock held. */
+static void finish_locked(struct pnb_job *job, pnb_result result) {
     if (job_is_cancelled(job)) {
         result = error_set(PNB_ERROR_CANCELLED, "the render was cancelled");
     }
@@ -98,7 +103,14 @@ void job_finish(struct pnb_job *job, pnb_result result) {
         drop_images(job);
     }
     end(job, result, result == PNB_OK ? "" : pnb_last_error());
-    pthread_mutex_unlock(&job->lock);
+}
+
+void job_finish(struct pnb_job *job, pnb_result result) {
+    pthread_mutex_lock(&job->lock);
+    if (job->state != JOB_DONE) {
+        finish_locked(job, result);
+    }
+    release_locked(job);
 }
 
 void job_set_progress(struct pnb_job *job, float fraction, uint32_t sample, const char *text) {
@@ -173,7 +185,7 @@ static pnb_result start(pnb_context *context, const pnb_scene *scene, const pnb_
         result = scene_create(scene, &job->messages, &job->scene);
     }
     if (result != PNB_OK) {
-        job_release(job);
+        release(job);
         return result;
     }
     job->progress.samples = job->settings.samples;
@@ -267,7 +279,7 @@ void pnb_job_destroy(pnb_job **job) {
     if (!process_is_forked()) {
         pnb_job_cancel(*job);
         (void)pnb_job_wait(*job, UINT32_MAX, NULL);
-        job_release(*job);
+        release(*job);
     }
     *job = NULL;
 }

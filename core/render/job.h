@@ -65,9 +65,8 @@ pnb_result job_add_timing(struct pnb_job *job, const char *name, double gpu_ms, 
 
 /* For the context. A job that is cancelled while queued is DONE at once; job_begin is then false. */
 bool job_begin(struct pnb_job *job);
-/* Ends a running job with the thread's last error, or CANCELLED if that was asked for. */
+/* Ends the job, if it is not DONE, with the thread's last error, or CANCELLED if that was asked for; and gives back the
+ * queue's reference at the same moment, so that a host that destroys the job then knows its memory is free. */
 void job_finish(struct pnb_job *job, pnb_result result);
-/* Gives back one reference. */
-void job_release(struct pnb_job *job);
 
 #endif

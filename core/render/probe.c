@@ -59,6 +59,9 @@ pnb_result pnb_probe_backends(pnb_backend_attempt *attempts, uint32_t capacity, 
     if (result == PNB_OK) {
         result = check_attempts(attempts, capacity, count);
     }
+    if (result == PNB_OK) {
+        result = backend_check_address_space();
+    }
     struct probe probe = {.attempts = attempts, .capacity = capacity};
     pthread_t thread;
     if (result == PNB_OK) {
