@@ -12,6 +12,10 @@ export BLENDER_USER_DATAFILES="$build/blender/datafiles"
 
 version=$(sed -n 's/^#define PNB_VERSION "\(.*\)"/\1/p' "$root/core/include/penumbra.h")
 zip=$build/penumbra-$version.zip
+if [[ ! -f $zip ]]; then
+    echo "There is no $zip; build the target 'addon' first." >&2
+    exit 1
+fi
 if [[ ! $build/blender/installed -nt $zip ]]; then
     mkdir -p "$BLENDER_USER_CONFIG" "$BLENDER_USER_SCRIPTS/addons" "$BLENDER_USER_DATAFILES"
     blender -b --factory-startup --python-exit-code 1 --python "$root/samples/install_addon.py" -- "$zip" \

@@ -54,6 +54,7 @@ def set_up_eevee(scene, samples):
 def set_up_penumbra(scene, samples):
     scene.render.engine = "PENUMBRA"
     scene.penumbra.technique, scene.penumbra.samples, scene.penumbra.light_samples = "REFERENCE", 1, samples
+    bpy.context.view_layer.use_pass_shadow = True
 
 
 def cast_shadows(on):
