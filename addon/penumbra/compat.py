@@ -12,6 +12,8 @@ AREA_RADIANCE_PER_POWER = 1.0 / pi if BLENDER_4 else 1.0 / 4.0
 # Before 4.0 a spot is a flat disk across its axis, which emits by the cosine, and the object's scale does nothing.
 SPOT_IS_FLAT_DISK = not BLENDER_4
 SPOT_IS_SCALED = BLENDER_4
+# Before 4.0 Cycles takes a sun for a flat disk at distance 1, whose rim gives less than its centre.
+SUN_IS_FLAT_DISK = not BLENDER_4
 
 # Panels of other engines that fit this one too.
 ADOPTED_PANELS = ('EEVEE_MATERIAL_PT_context_material', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface')

@@ -98,7 +98,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
             try:
                 done = self._wait(job, exported.warnings)
                 if done:
-                    passes.fill_layer(result.layers[0], depsgraph.view_layer_eval, job, *settings.crop[2:])
+                    passes.fill_layer(result.layers[0], depsgraph.view_layer, job, *settings.crop[2:])
             finally:
                 capi.library().destroy('job', job)
         finally:
@@ -109,10 +109,13 @@ class PenumbraEngine(bpy.types.RenderEngine):
         """Shows progress until the job ends; False if the user cancelled it."""
         library = capi.library()
         progress = capi.Progress()
+        shown = None
         try:
             while library.job_wait(job, POLL_MS, byref(progress)) == capi.TIMEOUT:
-                self.update_progress(progress.fraction)
-                self.update_stats("", progress.text.decode(errors='replace'))
+                if progress.text != shown:  # in the background each one is a line of output
+                    shown = progress.text
+                    self.update_progress(progress.fraction)
+                    self.update_stats("", shown.decode(errors='replace'))
                 if self.test_break():
                     library.job_cancel(job)
         except capi.Error as error:
@@ -139,7 +142,7 @@ def make_settings(depsgraph, width, height):
     settings = capi.Settings(
         technique=options.technique.encode(), width=width, height=height, samples=options.samples,
         filter_width=scene.render.filter_size, shadow_map_size=options.shadow_map_size,
-        light_samples=options.light_samples, passes=passes.wanted(depsgraph.view_layer_eval),
+        light_samples=options.light_samples, passes=passes.wanted(depsgraph.view_layer),
         flags=capi.SETTINGS_FILM_TRANSPARENT if scene.render.film_transparent else 0)
     settings.values = (capi.Value * len(values))(*[capi.Value(name.encode(), value) for name, value in values])
     settings.value_count = len(values)

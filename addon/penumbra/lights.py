@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light object -> pnb_light, with the radiometry of Cycles of the running Blender version."""
 
-from math import pi
+from math import pi, sqrt, tan
 
 from . import capi, compat, nodes
 
@@ -49,7 +49,12 @@ def _spot(target, light, matrix, name, warnings):
 
 def _sun(target, light, matrix, name, warnings):
     target.angle = light.angle
-    return 1.0 if compat.light_is_normalized(light) else pi * (light.angle / 2.0) ** 2
+    if not compat.light_is_normalized(light):
+        return pi * (light.angle / 2.0) ** 2
+    squared = tan(min(light.angle, 3.0) / 2.0) ** 2
+    if not compat.SUN_IS_FLAT_DISK or squared < 1e-6:
+        return 1.0
+    return 2.0 * (sqrt(1.0 + squared) - 1.0) / squared  # mean cosine over the disk
 
 
 def _area(target, light, matrix, name, warnings):

@@ -21,6 +21,7 @@ class Pass(NamedTuple):
 
 
 def list_passes(view_layer):
+    """`view_layer` is the original one: the evaluated one lacks lights that are hidden."""
     yield Pass("Combined", "RGBA", 'COLOR', capi.PASS_COMBINED, 0.0)
     if view_layer.use_pass_z:
         yield Pass("Depth", "Z", 'VALUE', capi.PASS_DEPTH, 1e10)

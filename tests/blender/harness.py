@@ -124,9 +124,13 @@ class SceneTest(unittest.TestCase):
         return path
 
 
+def blender_command(*arguments):
+    """A fresh Blender with the add-on."""
+    return [bpy.app.binary_path, '-b', '--factory-startup', '--addons', 'penumbra', *arguments]
+
+
 def run_blender(*arguments, environment=None):
-    """A fresh Blender with the add-on; (exit code, everything it printed)."""
-    command = [bpy.app.binary_path, '-b', '--factory-startup', '--addons', 'penumbra', *arguments]
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300, check=False,
+    """Runs one; (exit code, everything it printed)."""
+    done = subprocess.run(blender_command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300, check=False,
                           env={**os.environ, **(environment or {})})
     return done.returncode, done.stdout.decode(errors='replace')
