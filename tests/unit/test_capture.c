@@ -392,6 +392,8 @@ static void forged_references_are_found(void **state) {
     struct section settings = find_section(&fixture->file, SECTION_SETTINGS);
     size_t technique = settings.start + fields_size(&settings_fields);
     assert_number_found(fixture, technique, 1000, "name");
+    size_t name = fixture->file.size - sizeof(double) - strlen("light_size_scale") - sizeof(uint32_t);
+    assert_number_found(fixture, name, 100, "a name is broken"); /* no zero up to the end, and beyond it */
     assert_number_found(fixture, technique + 4 + strlen("PCSS"), STRING_ABSENT, "name is missing");
 }
 
