@@ -36,7 +36,9 @@ static size_t at_least_one(size_t size) {
 }
 
 void *memory_array(size_t count, size_t size) {
-    void *block = must_fail() ? NULL : calloc(at_least_one(count), at_least_one(size));
+    size_t bytes;
+    bool fails = __builtin_mul_overflow(count, size, &bytes) || must_fail();
+    void *block = fails ? NULL : calloc(at_least_one(bytes), 1);
     if (!block) {
         error_set(PNB_ERROR_OUT_OF_MEMORY, "out of memory: %zu x %zu bytes", count, size);
         return NULL;

@@ -8,6 +8,14 @@
 
 #include <stdlib.h>
 
+#ifdef __has_feature
+#define UNDER_ADDRESS_SANITIZER __has_feature(address_sanitizer)
+#elif defined __SANITIZE_ADDRESS__
+#define UNDER_ADDRESS_SANITIZER 1
+#else
+#define UNDER_ADDRESS_SANITIZER 0
+#endif
+
 /* One triangle under a square light, seen by a camera. */
 struct small_scene {
     pnb_mesh *mesh;

@@ -11,15 +11,6 @@
 
 #define SPAWN_MAX_VARIABLES 8
 
-/* AddressSanitizer needs terabytes of address space. */
-#ifdef __has_feature
-#define CAN_LIMIT_ADDRESS_SPACE (!__has_feature(address_sanitizer))
-#elif defined __SANITIZE_ADDRESS__
-#define CAN_LIMIT_ADDRESS_SPACE 0
-#else
-#define CAN_LIMIT_ADDRESS_SPACE 1
-#endif
-
 struct spawn {
     const char *argument;                       /* of the new program */
     const char *variables[SPAWN_MAX_VARIABLES]; /* "NAME=value", ended by NULL */
