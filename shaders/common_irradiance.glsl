@@ -35,9 +35,9 @@ void polygon_edge(inout polygon_walk walk, vec3 a, vec3 b) {
 }
 
 // Form factor times pi of a rectangle or ellipse. A 16-gon of the ellipse's area stands for it: within 0.3 %.
-float area_integral(vec3 center, vec3 u, vec3 v, bool ellipse) {
+float area_integral(vec3 center, vec3 u, vec3 v) {
     polygon_walk walk = polygon_walk(vec3(0.0), vec3(0.0), 0.0, false);
-    if (ellipse) {
+    if (ELLIPSE == 1) {
         const float step_cos = 0.92387953, step_sin = 0.38268343, grow = 1.01298903;
         vec2 direction = vec2(grow, 0.0);
         vec3 a = center + direction.x * u;
@@ -68,12 +68,12 @@ float area_irradiance(vec3 position, vec3 normal) {
     vec3 u = light.half_u.xyz, v = light.half_v.xyz;
     // Far and small: the polygon formula would lose its digits, the point formula is good to 1e-4.
     if (dot(u, u) + dot(v, v) < 1e-4 * d2) {
-        float area = length(cross(u, v)) * (light.frame_x.w != 0.0 ? PI : 4.0);
+        float area = length(cross(u, v)) * (ELLIPSE == 1 ? PI : 4.0);
         return area * facing * max(dot(normal, to_light), 0.0) / (d2 * d2);
     }
     vec3 x = normalize(abs(normal.z) < 0.9 ? vec3(normal.y, -normal.x, 0.0) : vec3(0.0, normal.z, -normal.y));
     mat3 local = transpose(mat3(x, cross(normal, x), normal));
-    return area_integral(local * to_light, local * u, local * v, light.frame_x.w != 0.0);
+    return area_integral(local * to_light, local * u, local * v);
 }
 
 // Irradiance of a cone of directions over pi sin^2(half angle), cut at the horizon (Snyder 1996).
@@ -90,10 +90,9 @@ float cap_factor(float cos_theta, float sin2_sigma) {
 
 // Irradiance for emission 1.
 float light_irradiance(vec3 position, vec3 normal) {
-    int type = light_type();
-    if (type == AREA)
+    if (LIGHT_TYPE == AREA)
         return area_irradiance(position, normal);
-    if (type == SUN) {
+    if (LIGHT_TYPE == SUN) {
         float t2 = light.tan_half_angle * light.tan_half_angle;
         return cap_factor(dot(normal, -light.frame_z.xyz), t2 / (1.0 + t2));
     }
@@ -102,5 +101,5 @@ float light_irradiance(vec3 position, vec3 normal) {
     float r2 = light.emission.w * light.emission.w;
     // The emitter is a disk that faces the point: it fills a cone of sin^2 = r2 / (r2 + d2).
     float irradiance = cap_factor(dot(normal, to_light) * inversesqrt(d2), r2 / (r2 + d2)) / (r2 + d2);
-    return type == SPOT ? irradiance * light_cone(position) : irradiance;
+    return LIGHT_TYPE == SPOT ? irradiance * light_cone(position) : irradiance;
 }

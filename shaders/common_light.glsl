@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One light and the views of its shadow maps (passes.h: struct light_block). Terms as in core/render/light.h.
+// LIGHT_TYPE, ELLIPSE and SINGLE_VIEW come from light_defines() in visibility.c.
 
 struct light_view {
     mat4 from_world;
@@ -11,13 +12,12 @@ struct light_view {
 
 layout(std140, binding = 1) uniform light_block {
     light_view views[6];
-    vec4 position;               // emitter centre; w: type, as pnb_light_type
-    vec4 frame_x, frame_y, frame_z; // frame_z: direction of emission; frame_x.w: 1 = elliptic
-                                    // outline; frame_y.w: 1 = SPOT that falls with the cosine to its axis
+    vec4 position;               // emitter centre
+    vec4 frame_x, frame_y, frame_z; // frame_z: direction of emission; frame_y.w: 1 = SPOT that falls with the cosine to its axis
     vec4 half_u, half_v;         // AREA: half axes
     vec4 emission;               // rgb; w: radius of POINT and SPOT
     vec4 cone;                   // SPOT: cosine of the half angle, blend, scale of X and Y
-    ivec4 faces_a, faces_b;      // map layer of the faces +Z +X -X +Y | -Y -Z, -1: none; faces_b.z: 1 = single view
+    ivec4 faces_a, faces_b;      // map layer of the faces +Z +X -X +Y | -Y -Z, -1: none
     float tan_half_angle;        // SUN
     float casts_shadow;
     int view_count;
@@ -27,14 +27,17 @@ layout(std140, binding = 1) uniform light_block {
 const int AREA = 0, POINT = 1, SPOT = 2, SUN = 3;
 const float PI = 3.14159265;
 
-int light_type() {
-    return int(light.position.w);
-}
+#ifdef SINGLE_VIEW
+#define LIGHT_VIEW(layer) light.views[0]
+#else
+#define LIGHT_VIEW(layer) light.views[layer]
+#endif
 
 // Map layer that holds a receiver, or -1 if no caster can shadow it.
 int light_layer(vec3 position) {
-    if (light.faces_b.z == 1)
-        return light.faces_a.x;
+#ifdef SINGLE_VIEW
+    return light.faces_a.x;
+#else
     vec3 d = position - light.position.xyz;
     vec3 local = vec3(dot(d, light.frame_x.xyz), dot(d, light.frame_y.xyz), dot(d, light.frame_z.xyz));
     vec3 a = abs(local);
@@ -43,6 +46,7 @@ int light_layer(vec3 position) {
     if (a.x >= a.y)
         return local.x >= 0.0 ? light.faces_a.y : light.faces_a.z;
     return local.y >= 0.0 ? light.faces_a.w : light.faces_b.x;
+#endif
 }
 
 // Share of a SPOT's intensity in the direction of a point, with the smooth edge Blender draws.
@@ -61,13 +65,12 @@ float light_cone(vec3 position) {
 // Whether any of the light can reach a surface point, were nothing in between. Never false where it can.
 bool light_reaches(vec3 position, vec3 normal) {
     vec3 to_light = light.position.xyz - position;
-    int type = light_type();
-    if (type == SUN)
+    if (LIGHT_TYPE == SUN)
         return dot(normal, -light.frame_z.xyz) > -light.tan_half_angle;
-    if (type == AREA)
+    if (LIGHT_TYPE == AREA)
         return dot(to_light, light.frame_z.xyz) < 0.0 &&
                dot(normal, to_light) + abs(dot(normal, light.half_u.xyz)) + abs(dot(normal, light.half_v.xyz)) > 0.0;
-    if (type == SPOT && light_cone(position) <= 0.0)
+    if (LIGHT_TYPE == SPOT && light_cone(position) <= 0.0)
         return false;
     return dot(normal, to_light) > -light.emission.w;
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hierarchical shadow map (Guennebaud, Barthe, Paulin 2006): what a whole rectangle of the map can do to a receiver.
 
-// Least and greatest light-space depth of the texels in the rectangle q +- extent; 1e30 outside the map.
+// Least and greatest light-space depth of the texels in the rectangle center +- extent; 1e30 outside the map.
 vec2 depth_range(receiver r, vec2 extent) {
-    vec2 low = (r.q - extent) * r.scale + r.offset, high = (r.q + extent) * r.scale + r.offset;
-    bool inside = all(greaterThanEqual(low, vec2(0.0))) && all(lessThan(high, r.map_size));
+    vec2 size = vec2(r.map_size);
+    vec2 low = r.center - extent, high = r.center + extent;
+    bool inside = all(greaterThanEqual(low, vec2(0.0))) && all(lessThan(high, size));
     vec2 side = high - low;
-    low = clamp(low, vec2(0.0), r.map_size - 1.0);
-    high = clamp(high, vec2(0.0), r.map_size - 1.0);
+    low = clamp(low, vec2(0.0), size - 1.0);
+    high = clamp(high, vec2(0.0), size - 1.0);
     // The first level whose texels are as wide as the rectangle: then it touches two at most on each axis.
     int level = clamp(int(ceil(log2(max(max(side.x, side.y), 2.0)))), 1, textureQueryLevels(min_max));
     ivec2 a = ivec2(low) >> level, b = ivec2(high) >> level;
@@ -19,24 +20,29 @@ vec2 depth_range(receiver r, vec2 extent) {
     return vec2(r.near_depth + r.depth_span * least, inside ? r.near_depth + r.depth_span * greatest : 1e30);
 }
 
-// Least and greatest of dot(normal, point) over the rectangle q +- extent and the depths given.
-vec2 plane_range(receiver r, vec2 extent, vec2 depths) {
-    float spread = dot(abs(r.normal.xy), extent);
-    float middle = dot(r.normal.xy, r.q);
-    vec2 slope = vec2(middle - spread, middle + spread);
-    if (!is_perspective())
-        return slope + (r.normal.z < 0.0 ? r.normal.z * depths.yx : r.normal.z * depths);
-    slope += r.normal.z;
-    return vec2(slope.x * (slope.x < 0.0 ? depths.y : depths.x), slope.y * (slope.y < 0.0 ? depths.x : depths.y));
+// Light-space depth of the nearest texel of the whole map.
+float nearest_depth(receiver r) {
+    int level = textureQueryLevels(min_max) - 1;
+    return r.near_depth + r.depth_span * texelFetch(min_max, ivec3(0, 0, r.layer), level).r;
 }
 
-// 1: no texel in the rectangle q +- extent can block the receiver. 0: every texel does. 0.5: undecided.
+// Least and greatest height (is_blocker) of the texels in the rectangle center +- extent at the depths given.
+vec2 height_range(receiver r, vec2 extent, vec2 depths) {
+    float spread = dot(abs(r.slope), extent);
+    float middle = dot(r.slope, r.center - 0.5) + r.level;
+    vec2 height = vec2(middle - spread, middle + spread);
+    if (!is_perspective())
+        return height + (r.normal.z < 0.0 ? r.normal.z * depths.yx : r.normal.z * depths);
+    return vec2(height.x * (height.x < 0.0 ? depths.y : depths.x), height.y * (height.y < 0.0 ? depths.x : depths.y));
+}
+
+// 1: no texel in the rectangle center +- extent can block the receiver. 0: every texel does. 0.5: undecided.
 float classify(receiver r, vec2 extent) {
     vec2 depths = depth_range(r, extent);
-    // Texels are tested at their centres, up to half of one outside the rectangle.
-    if (depths.x >= r.limit || plane_range(r, extent + r.texel, vec2(depths.x, r.limit)).y <= r.plane)
+    // A texel is tested at its centre, up to half of one outside the rectangle.
+    if (depths.x >= r.limit || height_range(r, extent + 1.0, vec2(depths.x, r.limit)).y <= r.plane)
         return 1.0;
-    if (depths.y < r.limit && plane_range(r, extent + r.texel, depths).x > r.plane)
+    if (depths.y < r.limit && height_range(r, extent + 1.0, depths).x > r.plane)
         return 0.0;
     return 0.5;
 }

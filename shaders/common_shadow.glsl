@@ -4,105 +4,113 @@
 uniform sampler2DArray shadow_map; // linear depth: 0 = near_depth, 1 = far_depth or nothing
 uniform sampler2DArray min_max;    // pyramid of shadow_map: minimum, maximum; level 0 has half its size
 
+// Map coordinates are in texels: texel i covers i .. i + 1.
 struct receiver {
-    vec3 position;   // light space of its view, metres
-    vec3 normal;     // geometric, light space
-    vec2 q;          // map coordinate
-    mat2 kernel;     // half axes of the emitter as seen from the receiver, on the plane of the map
-    float plane;     // dot(normal, point) of the points a blocker must be above
-    float limit;     // light-space depth a blocker must be before
+    vec3 position;    // light space of its view, metres
+    vec3 normal;      // geometric, light space
+    vec2 center;      // map coordinate
+    mat2 kernel;      // the emitter's half axes on the map, in texels per unit of kernel_scale
+    vec2 slope;       // height of the receiver's tangent plane: is_blocker
+    float level;
+    float plane;      // what the height of a blocker must exceed
+    float limit;      // light-space depth a blocker must be before
+    float texel_size; // larger side of a texel in q
     // Its view, out of the uniform block once and not at every tap:
     int layer;
-    vec2 scale, offset; // q * scale + offset = texel coordinate in the map
-    vec2 texel;         // size of a texel in q
-    vec2 map_size;      // texels
+    uvec2 map_size;
     float near_depth, depth_span;
 };
 
 bool is_perspective() {
-    return light_type() != SUN;
+    return LIGHT_TYPE != SUN;
 }
 
-// Distance between blocker and receiver as the kernel's scale: the offset in q of a blocker that hides the emitter
-// point s is kernel * s * kernel_scale. Perspective: 1/z_b - 1/z_r; orthographic: z_r - z_b.
+// Distance between blocker and receiver as the kernel's scale: the map offset of a blocker that hides the emitter point
+// s is kernel * s * kernel_scale. Perspective: 1/z_b - 1/z_r; orthographic: z_r - z_b.
 float kernel_scale(receiver r, float blocker_depth) {
     return is_perspective() ? 1.0 / blocker_depth - 1.0 / r.position.z : r.position.z - blocker_depth;
 }
 
-// Half extent in q of the rectangle that holds the kernel at this scale.
+// Half sides, in texels, of the rectangle that holds the kernel at this scale.
 vec2 kernel_extent(receiver r, float scale) {
     return (abs(r.kernel[0]) + abs(r.kernel[1])) * scale;
 }
 
-// The emitter's half axes on the map plane. A tilted axis o moves the image of a blocker by o.xy - q o.z to first order.
-mat2 receiver_kernel(receiver r, mat3 to_light) {
-    if (light_type() == SUN)
+// The emitter's half axes in q. A tilted axis o moves the image of a blocker by o.xy - q o.z to first order.
+mat2 emitter_axes(vec3 position, vec2 q, mat3 to_light) {
+    if (LIGHT_TYPE == SUN)
         return mat2(light.tan_half_angle);
     vec3 u, v;
-    if (light_type() == AREA) {
+    if (LIGHT_TYPE == AREA) {
         u = to_light * light.half_u.xyz;
         v = to_light * light.half_v.xyz;
     } else { // a disk that faces the receiver
-        vec3 axis = normalize(r.position);
+        vec3 axis = normalize(position);
         u = light.emission.w * normalize(vec3(axis.z, 0.0, -axis.x));
         v = cross(axis, u);
     }
-    return mat2(u.xy - r.q * u.z, v.xy - r.q * v.z);
+    return mat2(u.xy - q * u.z, v.xy - q * v.z);
 }
 
 // Bias: a blocker must be nearer than the receiver and above its tangent plane. On a plane the map's texels lie in
-// that plane exactly, because each is tested at its own centre, so only rounding remains to be tolerated. The tolerance
-// grows with the kernel, since the plane's slope is known to about 2e-4 (16-bit normals), and is the same in search and
-// filter.
+// that plane exactly, because each is tested at its own centre; what must be tolerated is rounding, the error of the
+// stored normal (16 bits: 2e-4 over the kernel), and the rise of a neighbouring facet of a curved surface within a
+// texel, which grows with the slope. kernel_radius: texels. The same in search and filter.
 void receiver_set_bias(inout receiver r, float kernel_radius) {
-    float scale = is_perspective() ? r.position.z : 1.0;
+    bool perspective = is_perspective();
+    float scale = r.texel_size * (perspective ? r.position.z : 1.0);
+    float facing = abs(perspective ? dot(r.normal, normalize(r.position)) : r.normal.z);
     float rounding = r.depth_span + abs(r.position.z);
-    float tolerance = scale * (0.02 * max(r.texel.x, r.texel.y) + 5e-4 * kernel_radius) + 2e-6 * rounding;
-    r.plane = dot(r.normal, r.position) + tolerance;
+    r.plane = dot(r.normal, r.position) + scale * (0.15 / max(facing, 0.1) + 5e-4 * kernel_radius) + 2e-6 * rounding;
     r.limit = r.position.z - 1e-6 * rounding;
 }
 
 receiver receiver_create(vec3 world_position, vec3 world_normal, int layer) {
     receiver r;
-    light_view view = light.views[layer];
+    light_view view = LIGHT_VIEW(layer);
+    mat3 to_light = mat3(view.from_world);
     r.layer = layer;
-    vec2 size = vec2(textureSize(shadow_map, 0).xy);
-    r.map_size = size;
-    r.scale = view.rect.zw * size;
-    r.offset = -view.rect.xy * r.scale;
-    r.texel = 1.0 / r.scale;
+    r.map_size = uvec2(textureSize(shadow_map, 0).xy);
     r.near_depth = view.near_depth;
     r.depth_span = view.far_depth - view.near_depth;
+    r.texel_size = view.texel;
     r.position = (view.from_world * vec4(world_position, 1.0)).xyz;
-    r.normal = mat3(view.from_world) * world_normal;
-    r.q = is_perspective() ? r.position.xy / r.position.z : r.position.xy;
-    r.kernel = receiver_kernel(r, mat3(view.from_world));
+    r.normal = to_light * world_normal;
+    vec2 q = is_perspective() ? r.position.xy / r.position.z : r.position.xy;
+    vec2 scale = view.rect.zw * vec2(r.map_size); // texels per unit of q
+    r.center = (q - view.rect.xy) * scale;
+    mat2 axes = emitter_axes(r.position, q, to_light);
+    r.kernel = mat2(axes[0] * scale, axes[1] * scale);
+    // dot(normal.xy, q) at the centre of texel t is dot(slope, t) + level.
+    r.slope = r.normal.xy / scale;
+    r.level = dot(r.slope, vec2(0.5)) + dot(r.normal.xy, view.rect.xy) + (is_perspective() ? r.normal.z : 0.0);
     receiver_set_bias(r, 0.0);
     return r;
 }
 
-// Whether the surface at q, at this light-space depth, hides part of the emitter from the receiver.
-bool is_blocker(receiver r, vec2 q, float depth) {
-    float height = dot(r.normal.xy, q);
-    height = is_perspective() ? (height + r.normal.z) * depth : height + r.normal.z * depth;
+// Whether the surface at a texel, at this light-space depth, hides part of the emitter from the receiver.
+bool is_blocker(receiver r, vec2 texel, float depth) {
+    float height = dot(r.slope, texel) + r.level;
+    height = is_perspective() ? height * depth : height + r.normal.z * depth;
     return depth < r.limit && height > r.plane;
 }
 
-// Whether the texel that holds q blocks the receiver, and its light-space depth. Nothing blocks outside the map:
+// Whether the texel at a map coordinate blocks the receiver, and its light-space depth. Nothing blocks outside the map:
 // light_views_fit covers every caster that matters.
-bool blocker_at(receiver r, vec2 q, out float depth) {
-    vec2 texel = floor(q * r.scale + r.offset);
-    depth = r.near_depth + r.depth_span * texelFetch(shadow_map, ivec3(ivec2(texel), r.layer), 0).r;
-    bool inside = all(lessThan(abs(texel + 0.5 - 0.5 * r.map_size), 0.5 * r.map_size));
-    return inside && is_blocker(r, (texel + 0.5 - r.offset) * r.texel, depth);
+bool blocker_at(receiver r, vec2 coordinate, out float depth) {
+    vec2 texel = floor(coordinate);
+    ivec2 index = ivec2(texel);
+    depth = r.near_depth + r.depth_span * texelFetch(shadow_map, ivec3(index, r.layer), 0).r;
+    return all(lessThan(uvec2(index), r.map_size)) && is_blocker(r, texel, depth);
 }
 
-// Share of the four texels around q that block the receiver, with bilinear weights.
-float blocked_bilinear(receiver r, vec2 q) {
-    vec2 f = fract(q * r.scale + r.offset - 0.5);
-    vec2 corner = q - 0.5 * r.texel;
+// Share of the four texels around a map coordinate that block the receiver, with bilinear weights.
+float blocked_bilinear(receiver r, vec2 coordinate) {
+    vec2 corner = coordinate - 0.5;
+    vec2 f = fract(corner);
     float depth;
-    vec4 blocked = vec4(blocker_at(r, corner, depth), blocker_at(r, corner + vec2(r.texel.x, 0.0), depth),
-                        blocker_at(r, corner + vec2(0.0, r.texel.y), depth), blocker_at(r, corner + r.texel, depth));
-    return mix(mix(blocked.x, blocked.y, f.x), mix(blocked.z, blocked.w, f.x), f.y);
+    bvec4 blocked = bvec4(blocker_at(r, corner, depth), blocker_at(r, corner + vec2(1.0, 0.0), depth),
+                          blocker_at(r, corner + vec2(0.0, 1.0), depth), blocker_at(r, corner + 1.0, depth));
+    vec4 b = vec4(blocked);
+    return mix(mix(b.x, b.y, f.x), mix(b.z, b.w, f.x), f.y);
 }

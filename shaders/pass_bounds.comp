@@ -17,14 +17,20 @@ void main() {
     ivec2 tile = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(tile, tile_count)))
         return;
-    vec3 minimum = vec3(3.4e38), maximum = vec3(-3.4e38);
     ivec2 first = tile * 16, last = min(first + 16, textureSize(gbuffer_depth, 0));
+    float nearest = 3.4e38, farthest = 0.0;
     for (int y = first.y; y < last.y; y++)
         for (int x = first.x; x < last.x; x++) {
             float depth = texelFetch(gbuffer_depth, ivec2(x, y), 0).r;
-            if (depth == 0.0)
-                continue;
-            vec3 position = camera_position(vec2(x, y) + 0.5, depth);
+            nearest = depth > 0.0 ? min(nearest, depth) : nearest;
+            farthest = max(farthest, depth);
+        }
+    // The corners of the piece of the view the tile cuts out between these depths.
+    vec3 minimum = vec3(3.4e38), maximum = vec3(-3.4e38);
+    if (farthest > 0.0)
+        for (int corner = 0; corner < 8; corner++) {
+            vec2 pixel = vec2((corner & 1) != 0 ? last.x : first.x, (corner & 2) != 0 ? last.y : first.y);
+            vec3 position = camera_position(pixel, (corner & 4) != 0 ? farthest : nearest);
             minimum = min(minimum, position);
             maximum = max(maximum, position);
         }

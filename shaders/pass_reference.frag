@@ -12,7 +12,7 @@ uniform int uniform_weights; // 1: every sample counts the same, as in the paper
 layout(location = 0) out vec4 out_visibility;
 
 float sample_weight(vec3 position, vec3 normal) {
-    if (light_type() == SUN)
+    if (LIGHT_TYPE == SUN)
         return max(dot(normal, -light.frame_z.xyz), 0.0);
     vec3 to_light = light.position.xyz - position;
     float d2 = dot(to_light, to_light);
@@ -38,5 +38,5 @@ void main() {
     if (layer < 0 || light.casts_shadow == 0.0 || texelFetch(gbuffer_color, pixel, 0).a < 1.0)
         return;
     receiver r = receiver_create(position, octahedral_decode(normals.zw), layer);
-    out_visibility.rgb *= 1.0 - blocked_bilinear(r, r.q);
+    out_visibility.rgb *= 1.0 - blocked_bilinear(r, r.center);
 }

@@ -3,5 +3,5 @@
 
 vec3 technique_visibility(receiver r) {
     float depth;
-    return vec3(blocker_at(r, r.q, depth) ? 0.0 : 1.0);
+    return vec3(blocker_at(r, r.center, depth) ? 0.0 : 1.0);
 }

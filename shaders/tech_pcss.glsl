@@ -6,53 +6,69 @@
 uniform int p_search_reduction;
 uniform int p_min_max;
 
-// Scale of the search: the kernel of the nearest depth a blocker can have. Each step looks up the nearest depth inside
-// the last rectangle, which can only shrink it (Guennebaud et al. 2006, section 4.2), and never loses a blocker.
+// Scale of the search: the kernel of the nearest blocker there can be. Each step looks up the nearest depth inside the
+// last rectangle, which can only shrink it (Guennebaud et al. 2006, section 4.2), and never loses a blocker.
 float search_scale(receiver r) {
-    float scale = max(kernel_scale(r, r.near_depth), 0.0);
+    float scale = max(kernel_scale(r, nearest_depth(r)), 0.0);
     for (int i = 0; i < p_search_reduction; i++) {
-        float nearest = depth_range(r, kernel_extent(r, scale) + r.texel).x;
+        float nearest = depth_range(r, kernel_extent(r, scale) + 1.0).x;
         scale = clamp(kernel_scale(r, min(nearest, r.position.z)), 0.0, scale);
     }
     return scale;
 }
 
-void search_tap(receiver r, vec2 q, inout vec2 sum) {
+// Counts a texel that hides some point of the emitter: its offset must lie within the kernel of its own depth. Without
+// this the search averages texels no ray to the light passes, such as a rising floor beside the receiver.
+void search_tap(receiver r, vec2 offset, vec2 reach, inout vec2 sum) {
     float depth;
-    if (blocker_at(r, q, depth))
+    if (blocker_at(r, r.center + offset, depth) && all(lessThanEqual(abs(offset), reach * kernel_scale(r, depth) + 1.0)))
         sum += vec2(depth, 1.0);
 }
 
-float filter_tap(receiver r, vec2 q) {
+float filter_tap(receiver r, vec2 offset) {
     float depth;
-    return float(blocker_at(r, q, depth));
+    return blocker_at(r, r.center + offset, depth) ? 1.0 : 0.0;
+}
+
+// The kernel at a scale, a texel wide at least, so that the edges of texels are smoothed.
+mat2 kernel_at(receiver r, float scale) {
+    vec2 u = r.kernel[0], v = r.kernel[1];
+    float u_length = length(u), v_length = length(v);
+    return mat2(u_length > 1e-6 ? u * max(scale, 0.5 / u_length) : vec2(0.5, 0.0),
+                v_length > 1e-6 ? v * max(scale, 0.5 / v_length) : vec2(0.0, 0.5));
+}
+
+// Every stride-th pair of taps is enough for a kernel of few texels: two taps to a texel, and four to begin with.
+int tap_stride(mat2 kernel, int count) {
+    float texels = 4.0 * abs(kernel[0].x * kernel[1].y - kernel[0].y * kernel[1].x);
+    return clamp(int(float(count) / (2.0 * texels + 4.0)), 1, (count + 1) / 2);
 }
 
 vec3 technique_visibility(receiver r) {
-    // Never narrower than two texels, so that the edges of texels are smoothed away.
     float scale = search_scale(r);
-    mat2 kernel = r.kernel * scale;
-    vec2 extent = kernel_extent(r, scale) + r.texel;
+    vec2 extent = kernel_extent(r, scale) + 1.0;
     receiver_set_bias(r, max(extent.x, extent.y));
     if (p_min_max == 1) {
         float known = classify(r, extent);
         if (known != 0.5)
             return vec3(known);
     }
+    mat2 kernel = kernel_at(r, scale);
+    vec2 reach = kernel_extent(r, 1.0);
     vec2 sum = vec2(0.0);
-    for (int i = 0; i < (search_count + 1) / 2; i++) {
-        vec4 s = search_taps[i];
-        search_tap(r, r.q + kernel * s.xy + r.texel * s.xy, sum);
-        search_tap(r, r.q + kernel * s.zw + r.texel * s.zw, sum);
+    search_tap(r, vec2(0.0), reach, sum);
+    int stride = tap_stride(kernel, search_count);
+    for (int i = 0; i < (search_count + 1) / 2; i += stride) {
+        search_tap(r, kernel * search_taps[i].xy, reach, sum);
+        search_tap(r, kernel * search_taps[i].zw, reach, sum);
     }
     if (sum.y == 0.0)
         return vec3(1.0);
-    kernel = r.kernel * max(kernel_scale(r, sum.x / sum.y), 0.0);
-    float blocked = 0.0;
-    for (int i = 0; i < (filter_count + 1) / 2; i++) {
-        vec4 s = filter_taps[i];
-        blocked += filter_tap(r, r.q + kernel * s.xy + r.texel * s.xy);
-        blocked += filter_tap(r, r.q + kernel * s.zw + r.texel * s.zw);
-    }
-    return vec3(1.0 - blocked / float(filter_count));
+    kernel = kernel_at(r, max(kernel_scale(r, sum.x / sum.y), 0.0));
+    stride = tap_stride(kernel, filter_count);
+    vec2 blocked = vec2(0.0);
+    for (int i = 0; i < (filter_count + 1) / 2; i += stride)
+        blocked += vec2(filter_tap(r, kernel * filter_taps[i].xy) + filter_tap(r, kernel * filter_taps[i].zw),
+                        2 * i + 1 < filter_count ? 2.0 : 1.0);
+    return vec3(1.0 - blocked.x / blocked.y);
 }

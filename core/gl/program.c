@@ -115,9 +115,11 @@ static pnb_result shader_compile(const struct gl *gl, GLenum stage, const char *
     struct source source = {.technique = desc->technique};
     static const char version[] = "#version 430 core\n";
     pnb_result result = PNB_OK;
-    if (!source_append(&source, version, sizeof version - 1) ||
-        (desc->defines && !source_append(&source, desc->defines, strlen(desc->defines))))
+    if (!source_append(&source, version, sizeof version - 1))
         result = PNB_ERROR_OUT_OF_MEMORY;
+    for (int i = 0; i < 2; i++)
+        if (desc->defines[i] && !source_append(&source, desc->defines[i], strlen(desc->defines[i])))
+            result = PNB_ERROR_OUT_OF_MEMORY;
     if (result == PNB_OK)
         result = source_add_file(&source, file);
     if (result != PNB_OK) {
@@ -139,7 +141,7 @@ static pnb_result shader_compile(const struct gl *gl, GLenum stage, const char *
                      desc->technique ? desc->technique : "no technique", log);
 }
 
-pnb_result program_create(const struct gl *gl, const struct program_desc *desc, GLuint *program) {
+static pnb_result program_create(const struct gl *gl, const struct program_desc *desc, GLuint *program) {
     const GLenum stages[3] = {GL_VERTEX_SHADER, GL_FRAGMENT_SHADER, GL_COMPUTE_SHADER};
     const char *files[3] = {desc->vertex, desc->fragment, desc->compute};
     const GLuint id = gl->CreateProgram();
@@ -166,6 +168,63 @@ pnb_result program_create(const struct gl *gl, const struct program_desc *desc, 
                          desc->fragment ? desc->fragment : desc->compute, log);
     }
     *program = id;
+    return PNB_OK;
+}
+
+struct program_entry {
+    struct program_desc desc;
+    GLuint program;
+};
+
+void program_cache_init(struct program_cache *cache, const struct gl *gl) {
+    *cache = (struct program_cache){.gl = gl};
+}
+
+void program_cache_free(struct program_cache *cache) {
+    for (uint32_t i = 0; i < cache->count; i++)
+        cache->gl->DeleteProgram(cache->entries[i].program);
+    memory_free(cache->entries);
+    *cache = (struct program_cache){0};
+}
+
+static bool strings_equal(const char *a, const char *b) {
+    return a == b || (a && b && strcmp(a, b) == 0);
+}
+
+static bool descs_equal(const struct program_desc *a, const struct program_desc *b) {
+    return strings_equal(a->vertex, b->vertex) && strings_equal(a->fragment, b->fragment) &&
+           strings_equal(a->compute, b->compute) && strings_equal(a->technique, b->technique) &&
+           strings_equal(a->defines[0], b->defines[0]) && strings_equal(a->defines[1], b->defines[1]);
+}
+
+static pnb_result program_add(struct program_cache *cache, const struct program_desc *desc) {
+    if (cache->count == cache->capacity) {
+        const uint32_t capacity = 2 * cache->capacity + 16;
+        struct program_entry *entries = memory_resize(cache->entries, capacity, sizeof *entries);
+        if (!entries)
+            return PNB_ERROR_OUT_OF_MEMORY;
+        cache->entries = entries;
+        cache->capacity = capacity;
+    }
+    struct program_entry *entry = &cache->entries[cache->count];
+    entry->desc = *desc;
+    pnb_result result = program_create(cache->gl, desc, &entry->program);
+    if (result == PNB_OK)
+        cache->count++;
+    return result;
+}
+
+pnb_result program_use(struct program_cache *cache, const struct program_desc *desc, GLuint *program) {
+    uint32_t i = 0;
+    while (i < cache->count && !descs_equal(&cache->entries[i].desc, desc))
+        i++;
+    if (i == cache->count) {
+        pnb_result result = program_add(cache, desc);
+        if (result != PNB_OK)
+            return result;
+    }
+    *program = cache->entries[i].program;
+    cache->gl->UseProgram(*program);
     return PNB_OK;
 }
 

@@ -9,11 +9,22 @@
 struct program_desc {
     const char *vertex, *fragment, *compute; /* file names; either compute or the other two */
     const char *technique;                   /* file for `#include "technique"`, or NULL */
-    const char *defines;                     /* lines put after #version, or NULL */
+    const char *defines[2];                  /* lines put after #version, or NULL */
 };
 
-/* INTERNAL with the compiler's log when a shader does not compile. The caller deletes the program. */
-pnb_result program_create(const struct gl *gl, const struct program_desc *desc, GLuint *program);
+/* Programs made so far. All strings of a program_desc must be static: they are the key. */
+struct program_cache {
+    const struct gl *gl;
+    struct program_entry *entries;
+    uint32_t count, capacity;
+};
+
+void program_cache_init(struct program_cache *cache, const struct gl *gl);
+void program_cache_free(struct program_cache *cache);
+
+/* The program of this description, compiled at its first use and made current. Owned by the cache.
+ * INTERNAL with the compiler's log when a shader does not compile. */
+pnb_result program_use(struct program_cache *cache, const struct program_desc *desc, GLuint *program);
 
 /* Uniforms of the current program; names the program does not use are ignored. */
 void program_set_int(const struct gl *gl, GLuint program, const char *name, int value);

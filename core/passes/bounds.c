@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../gl/program.h"
 #include "../memory.h"
 #include "passes.h"
 
@@ -53,15 +52,18 @@ pnb_result pass_bounds(struct frame *frame) {
     struct box *tiles = memory_array(count, sizeof *tiles);
     if (!tiles)
         return PNB_ERROR_OUT_OF_MEMORY;
-    pnb_result result = timer_begin(&renderer->timer, "Receiver bounds");
+    static const struct program_desc desc = {.compute = "pass_bounds.comp"};
+    GLuint program;
+    pnb_result result = program_use(&renderer->programs, &desc, &program);
+    if (result == PNB_OK)
+        result = timer_begin(&renderer->timer, "Receiver bounds");
     if (result == PNB_OK) {
         gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, renderer->box_buffer);
         gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)(count * sizeof *tiles), NULL, GL_STREAM_READ);
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, renderer->box_buffer);
-        gl->UseProgram(renderer->bounds_program);
         gl_texture_bind(gl, &renderer->gbuffer_depth, 0);
-        program_set_int(gl, renderer->bounds_program, "gbuffer_depth", 0);
-        gl->Uniform2iv(gl->GetUniformLocation(renderer->bounds_program, "tile_count"), 1, (const int[2]){columns, rows});
+        program_set_int(gl, program, "gbuffer_depth", 0);
+        gl->Uniform2iv(gl->GetUniformLocation(program, "tile_count"), 1, (const int[2]){columns, rows});
         gl->DispatchCompute((GLuint)(columns + 7) / 8, (GLuint)(rows + 7) / 8, 1);
         gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
         gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *tiles), tiles);

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../gl/program.h"
 #include "passes.h"
 
 static void upload_camera(struct renderer *renderer, const struct camera_block *camera) {
@@ -58,12 +57,18 @@ pnb_result pass_gbuffer(struct frame *frame) {
     gpu_scene_depth_range(renderer->scene, &frame->camera, planes);
     mat4 clip;
     camera_projection(&frame->camera, planes[0], planes[1], clip);
-    for (int i = 0; i < 2; i++) {
-        gl->UseProgram(renderer->gbuffer_programs[i]);
-        program_set_mat4(gl, renderer->gbuffer_programs[i], "projection", (const float *)clip);
+    static const struct program_desc descs[] = {
+        {.vertex = "pass_gbuffer.vert", .fragment = "pass_gbuffer.frag"},
+        {.vertex = "pass_gbuffer.vert", .fragment = "pass_gbuffer.frag", .defines = {"#define TEXTURED\n#define TRANSPARENT\n"}}};
+    GLuint programs[2];
+    for (int i = 0; i < 2 && result == PNB_OK; i++) {
+        result = program_use(&renderer->programs, &descs[i], &programs[i]);
+        if (result == PNB_OK)
+            program_set_mat4(gl, programs[i], "projection", (const float *)clip);
     }
-    const struct draw_programs programs = {renderer->gbuffer_programs[0], renderer->gbuffer_programs[1], false};
-    result = gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA, &programs);
+    if (result == PNB_OK)
+        result = gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA,
+                                &(struct draw_programs){programs[0], programs[1], false});
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +
                                     gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_z));
     return result;

@@ -1,19 +1,22 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../gl/program.h"
 #include "passes.h"
 
 pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struct gl_texture *pyramid) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const GLuint program = renderer->min_max_program;
     /* Texture levels halve by floor; a side rounded up to a power of two makes that exact. */
     int side = 1, levels = 1;
     for (; 2 * side < map->width; side *= 2)
         levels++;
     pnb_result result = gl_texture_ensure(gl, pyramid, GL_RG32F, side, side, map->layers, levels);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Min-max pyramid")) != PNB_OK)
+    if (result != PNB_OK)
         return result;
-    gl->UseProgram(program);
+    static const struct program_desc desc = {.compute = "pass_min_max.comp"};
+    GLuint program;
+    if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK)
+        return result;
+    if ((result = timer_begin(&renderer->timer, "Min-max pyramid")) != PNB_OK)
+        return result;
     program_set_int(gl, program, "source", 0);
     for (int level = 0; level < levels; level++) {
         const struct gl_texture *source = level == 0 ? map : pyramid;

@@ -5,6 +5,7 @@
 #ifndef PNB_PASSES_H
 #define PNB_PASSES_H
 
+#include "../gl/program.h"
 #include "../render/frame.h"
 #include "../render/gpu_scene.h"
 #include "../render/timer.h"
@@ -23,21 +24,12 @@ _Static_assert(sizeof(struct light_view) == 96, "std140 layout of light_view");
 _Static_assert(sizeof(struct light_block) == 6 * 96 + 11 * 16, "std140 layout of light_block");
 _Static_assert(sizeof(struct camera_block) == 6 * 16, "std140 layout of camera_block");
 
-/* A visibility program and the technique it was made for. */
-struct technique_program {
-    const struct technique *technique;
-    GLuint program;
-};
-#define MAX_TECHNIQUES 32
-
 struct renderer {
     const struct gl *gl;
     struct gpu_scene *scene;
     struct timer timer;
     GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer, box_buffer;
-    GLuint gbuffer_programs[2], shadow_programs[2][2]; /* plain, textured; [orthographic, perspective] */
-    GLuint min_max_program, bounds_program, base_program, shading_program, resolve_program, reference_program;
-    struct technique_program visibility_programs[MAX_TECHNIQUES];
+    struct program_cache programs;
 
     /* G-buffer, W x H: see common_camera.glsl for the contents. */
     struct gl_texture gbuffer_depth, gbuffer_normal, gbuffer_color, gbuffer_z;
@@ -62,6 +54,9 @@ pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struc
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light);
 /* Uploads the light for the shaders of the passes after it. */
 void light_block_upload(struct renderer *renderer, const struct emitter *emitter, const struct light_views *views);
+/* #define lines for the shaders of a pass over one light: its type, outline and number of views as constants, since a
+ * software renderer executes both sides of every branch. Static string. */
+const char *light_defines(const struct emitter *emitter, const struct light_views *views);
 /* Binds gbuffer_depth, _normal and _color as the current program's samplers. */
 void bind_gbuffer(struct renderer *renderer, GLuint program);
 /* shading.c: clears the sums; adds background, ambient and normal; adds one light's radiance and irradiance. */

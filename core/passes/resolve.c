@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../gl/program.h"
 #include "../memory.h"
 #include "passes.h"
 
@@ -40,12 +39,15 @@ static pnb_result draw_resolve(struct frame *frame) {
         return result;
     gl->Disable(GL_BLEND);
     gl->Disable(GL_DEPTH_TEST);
-    gl->UseProgram(renderer->resolve_program);
+    static const struct program_desc desc = {.vertex = "pass_screen.vert", .fragment = "pass_resolve.frag"};
+    GLuint program;
+    if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK)
+        return result;
     for (int i = 0; i < 4; i++) {
         gl_texture_bind(gl, sums[i], i);
-        program_set_int(gl, renderer->resolve_program, names[i], i);
+        program_set_int(gl, program, names[i], i);
     }
-    program_set_float(gl, renderer->resolve_program, "sample_weight", 1.0f / (float)frame->settings->samples);
+    program_set_float(gl, program, "sample_weight", 1.0f / (float)frame->settings->samples);
     draw_screen(renderer);
     return gl_check(gl, "resolve");
 }

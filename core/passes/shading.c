@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../gl/program.h"
 #include "passes.h"
 
 static uint64_t sums_bytes(const struct renderer *renderer) {
@@ -54,8 +53,10 @@ pnb_result pass_base(struct frame *frame) {
     if (result != PNB_OK || (result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
     begin_adding(gl);
-    const GLuint program = renderer->base_program;
-    gl->UseProgram(program);
+    static const struct program_desc desc = {.vertex = "pass_screen.vert", .fragment = "pass_base.frag"};
+    GLuint program;
+    if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK)
+        return result;
     bind_gbuffer(renderer, program);
     const float *world = frame->scene->world_color;
     const bool transparent = frame->settings->flags & PNB_SETTINGS_FILM_TRANSPARENT;
@@ -78,8 +79,13 @@ pnb_result pass_shading(struct frame *frame, uint32_t light) {
     if (result != PNB_OK || (result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
     begin_adding(gl);
-    const GLuint program = renderer->shading_program;
-    gl->UseProgram(program);
+    const struct frame_light *source = &frame->lights[light];
+    const struct program_desc desc = {.vertex = "pass_screen.vert",
+                                      .fragment = "pass_shading.frag",
+                                      .defines = {light_defines(&source->emitter, &source->views)}};
+    GLuint program;
+    if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK)
+        return result;
     bind_gbuffer(renderer, program);
     gl_texture_bind(gl, &renderer->visibility, 3);
     program_set_int(gl, program, "visibility", 3);

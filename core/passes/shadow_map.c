@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../gl/program.h"
 #include "passes.h"
 
 static pnb_result draw_view(struct frame *frame, const struct light_view *view, const struct gl_texture *map, int layer) {
@@ -14,14 +13,21 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
     mat4 projection, clip;
     light_view_projection(view, projection);
     glm_mat4_mul(projection, (vec4 *)view->from_world, clip);
-    const GLuint *programs = renderer->shadow_programs[view->perspective != 0.0f];
+    const char *const perspective = view->perspective != 0.0f ? "#define PERSPECTIVE\n" : NULL;
+    const struct program_desc descs[] = {
+        {.vertex = "pass_shadow_map.vert", .fragment = "pass_shadow_map.frag", .defines = {perspective}},
+        {.vertex = "pass_shadow_map.vert",
+         .fragment = "pass_shadow_map.frag",
+         .defines = {perspective, "#define TEXTURED\n#define TRANSPARENT\n"}}};
+    GLuint programs[2];
     for (int i = 0; i < 2; i++) {
-        gl->UseProgram(programs[i]);
+        if ((result = program_use(&renderer->programs, &descs[i], &programs[i])) != PNB_OK)
+            return result;
         program_set_mat4(gl, programs[i], "projection", (const float *)clip);
         program_set_vec2(gl, programs[i], "depth_planes", (const float[2]){view->near_depth, view->far_depth});
     }
-    const struct draw_programs draw_programs = {programs[0], programs[1], true};
-    return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, &draw_programs);
+    return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW,
+                          &(struct draw_programs){programs[0], programs[1], true});
 }
 
 pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,

@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../gl/program.h"
 #include "passes.h"
 
 #include <stdio.h>
@@ -10,8 +9,8 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
                                 .casts_shadow = emitter->casts_shadow ? 1.0f : 0.0f,
                                 .view_count = views->count};
     memcpy(block.views, views->views, sizeof block.views);
-    glm_vec4((float *)emitter->position, (float)emitter->type, block.position);
-    glm_vec4((float *)emitter->frame[0], emitter->ellipse ? 1.0f : 0.0f, block.frame_x);
+    glm_vec4((float *)emitter->position, 0.0f, block.position);
+    glm_vec4((float *)emitter->frame[0], 0.0f, block.frame_x);
     glm_vec4((float *)emitter->frame[1], emitter->cosine_spot ? 1.0f : 0.0f, block.frame_y);
     glm_vec4((float *)emitter->frame[2], 0.0f, block.frame_z);
     glm_vec4((float *)emitter->half_u, 0.0f, block.half_u);
@@ -25,7 +24,6 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
         block.faces_a[i] = views->layer_of_face[i];
     block.faces_b[0] = views->layer_of_face[4];
     block.faces_b[1] = views->layer_of_face[5];
-    block.faces_b[2] = views->single ? 1 : 0;
     const struct gl *gl = renderer->gl;
     gl->BindBuffer(GL_UNIFORM_BUFFER, renderer->light_buffer);
     gl->BufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
@@ -41,21 +39,19 @@ void bind_gbuffer(struct renderer *renderer, GLuint program) {
     }
 }
 
-/* The technique's program, compiled at its first use. */
-static pnb_result technique_program(struct renderer *renderer, const struct technique *technique, GLuint *program) {
-    struct technique_program *entry = renderer->visibility_programs;
-    while (entry->technique && entry->technique != technique)
-        entry++;
-    if (!entry->technique) {
-        const struct program_desc desc = {
-            .vertex = "pass_screen.vert", .fragment = "pass_visibility.frag", .technique = technique->shader};
-        pnb_result result = program_create(renderer->gl, &desc, &entry->program);
-        if (result != PNB_OK)
-            return result;
-        entry->technique = technique;
-    }
-    *program = entry->program;
-    return PNB_OK;
+const char *light_defines(const struct emitter *emitter, const struct light_views *views) {
+    static const char *const single[][2] = {
+        [PNB_LIGHT_AREA] = {"#define LIGHT_TYPE 0\n#define ELLIPSE 0\n#define SINGLE_VIEW\n",
+                            "#define LIGHT_TYPE 0\n#define ELLIPSE 1\n#define SINGLE_VIEW\n"},
+        [PNB_LIGHT_POINT] = {NULL, "#define LIGHT_TYPE 1\n#define ELLIPSE 1\n#define SINGLE_VIEW\n"},
+        [PNB_LIGHT_SPOT] = {NULL, "#define LIGHT_TYPE 2\n#define ELLIPSE 1\n#define SINGLE_VIEW\n"},
+        [PNB_LIGHT_SUN] = {NULL, "#define LIGHT_TYPE 3\n#define ELLIPSE 1\n#define SINGLE_VIEW\n"}};
+    static const char *const faces[][2] = {
+        [PNB_LIGHT_AREA] = {"#define LIGHT_TYPE 0\n#define ELLIPSE 0\n", "#define LIGHT_TYPE 0\n#define ELLIPSE 1\n"},
+        [PNB_LIGHT_POINT] = {NULL, "#define LIGHT_TYPE 1\n#define ELLIPSE 1\n"},
+        [PNB_LIGHT_SPOT] = {NULL, "#define LIGHT_TYPE 2\n#define ELLIPSE 1\n"},
+        [PNB_LIGHT_SUN] = {NULL, "#define LIGHT_TYPE 3\n#define ELLIPSE 1\n"}};
+    return (views->single ? single : faces)[emitter->type][emitter->ellipse];
 }
 
 static void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings) {
@@ -84,8 +80,12 @@ static void upload_taps(struct frame *frame, GLuint program, bool ellipse) {
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
+    const struct program_desc desc = {.vertex = "pass_screen.vert",
+                                      .fragment = "pass_visibility.frag",
+                                      .technique = frame->settings->technique->shader,
+                                      .defines = {light_defines(&light->emitter, &light->views)}};
     GLuint program;
-    pnb_result result = technique_program(renderer, frame->settings->technique, &program);
+    pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
         return result;
     const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1};
@@ -93,7 +93,6 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light)
         return result;
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
-    gl->UseProgram(program);
     bind_gbuffer(renderer, program);
     set_parameters(gl, program, frame->settings);
     if (frame->settings->technique->taps)

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "renderer.h"
-#include "../gl/program.h"
 #include "../memory.h"
 #include "../passes/passes.h"
 
@@ -9,41 +8,13 @@
 /* Shadow maps kept at once. More lights are handled in groups, each of which draws the G-buffer again. */
 #define SHADOW_MAP_BUDGET (512ull << 20)
 
-static pnb_result create_programs(struct renderer *renderer) {
-    const char *const textured = "#define TEXTURED\n#define TRANSPARENT\n";
-    const char *const perspective = "#define PERSPECTIVE\n";
-    const char *const both = "#define TEXTURED\n#define TRANSPARENT\n#define PERSPECTIVE\n";
-    const struct {
-        GLuint *program;
-        struct program_desc desc;
-    } list[] = {
-        {&renderer->gbuffer_programs[0], {"pass_gbuffer.vert", "pass_gbuffer.frag", NULL, NULL, NULL}},
-        {&renderer->gbuffer_programs[1], {"pass_gbuffer.vert", "pass_gbuffer.frag", NULL, NULL, textured}},
-        {&renderer->shadow_programs[0][0], {"pass_shadow_map.vert", "pass_shadow_map.frag", NULL, NULL, NULL}},
-        {&renderer->shadow_programs[0][1], {"pass_shadow_map.vert", "pass_shadow_map.frag", NULL, NULL, textured}},
-        {&renderer->shadow_programs[1][0], {"pass_shadow_map.vert", "pass_shadow_map.frag", NULL, NULL, perspective}},
-        {&renderer->shadow_programs[1][1], {"pass_shadow_map.vert", "pass_shadow_map.frag", NULL, NULL, both}},
-        {&renderer->min_max_program, {NULL, NULL, "pass_min_max.comp", NULL, NULL}},
-        {&renderer->bounds_program, {NULL, NULL, "pass_bounds.comp", NULL, NULL}},
-        {&renderer->base_program, {"pass_screen.vert", "pass_base.frag", NULL, NULL, NULL}},
-        {&renderer->shading_program, {"pass_screen.vert", "pass_shading.frag", NULL, NULL, NULL}},
-        {&renderer->resolve_program, {"pass_screen.vert", "pass_resolve.frag", NULL, NULL, NULL}},
-        {&renderer->reference_program, {"pass_screen.vert", "pass_reference.frag", NULL, NULL, NULL}},
-    };
-    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
-        pnb_result result = program_create(renderer->gl, &list[i].desc, list[i].program);
-        if (result != PNB_OK)
-            return result;
-    }
-    return PNB_OK;
-}
-
 pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
     struct renderer *renderer = memory_array(1, sizeof *renderer);
     if (!renderer)
         return PNB_ERROR_OUT_OF_MEMORY;
     renderer->gl = gl;
     timer_init(&renderer->timer, gl);
+    program_cache_init(&renderer->programs, gl);
     gl->GenFramebuffers(1, &renderer->framebuffer);
     gl->GenVertexArrays(1, &renderer->empty_vertex_array);
     GLuint *const buffers[] = {&renderer->camera_buffer, &renderer->light_buffer, &renderer->tap_buffer,
@@ -51,8 +22,6 @@ pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
     for (int i = 0; i < 4; i++)
         gl->GenBuffers(1, buffers[i]);
     pnb_result result = gpu_scene_create(gl, &renderer->scene);
-    if (result == PNB_OK)
-        result = create_programs(renderer);
     if (result == PNB_OK)
         result = gl_check(gl, "renderer");
     if (result != PNB_OK) {
@@ -63,21 +32,6 @@ pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
     return PNB_OK;
 }
 
-static void free_programs(struct renderer *renderer) {
-    const struct gl *gl = renderer->gl;
-    for (int i = 0; i < 2; i++) {
-        gl->DeleteProgram(renderer->gbuffer_programs[i]);
-        gl->DeleteProgram(renderer->shadow_programs[i][0]);
-        gl->DeleteProgram(renderer->shadow_programs[i][1]);
-    }
-    const GLuint programs[] = {renderer->min_max_program, renderer->bounds_program,  renderer->base_program,
-                               renderer->shading_program, renderer->resolve_program, renderer->reference_program};
-    for (size_t i = 0; i < sizeof programs / sizeof *programs; i++)
-        gl->DeleteProgram(programs[i]);
-    for (int i = 0; i < MAX_TECHNIQUES; i++)
-        gl->DeleteProgram(renderer->visibility_programs[i].program);
-}
-
 void renderer_destroy(struct renderer **out) {
     struct renderer *renderer = *out;
     if (!renderer)
@@ -85,7 +39,7 @@ void renderer_destroy(struct renderer **out) {
     const struct gl *gl = renderer->gl;
     gpu_scene_destroy(&renderer->scene);
     timer_free(&renderer->timer);
-    free_programs(renderer);
+    program_cache_free(&renderer->programs);
     gl->DeleteFramebuffers(1, &renderer->framebuffer);
     gl->DeleteVertexArrays(1, &renderer->empty_vertex_array);
     const GLuint buffers[] = {renderer->camera_buffer, renderer->light_buffer, renderer->tap_buffer, renderer->box_buffer};
@@ -126,6 +80,7 @@ static pnb_result find_receivers(struct frame *frame) {
     frame->settings = settings;
     frame->width = (int)settings->crop[2];
     frame->height = (int)settings->crop[3];
+    frame->gbuffer_is_first_sample = settings->crop[2] == settings->width && settings->crop[3] == settings->height;
     return result;
 }
 
@@ -198,7 +153,8 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
     pnb_result result = PNB_OK;
     for (frame->sample = 0; frame->sample < frame->settings->samples && result == PNB_OK; frame->sample++) {
         camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
-        result = pass_gbuffer(frame);
+        if (!(first == 0 && frame->sample == 0 && frame->gbuffer_is_first_sample))
+            result = pass_gbuffer(frame);
         if (result == PNB_OK && first == 0)
             result = pass_base(frame);
         if (result == PNB_OK && first == 0 && frame->sample == 0)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Ground truth: the average of hard shadows from N x N points of the emitter. Every other technique is measured
  * against it, and it is measured against a path tracer. */
-#include "../gl/program.h"
 #include "../passes/passes.h"
 #include "technique.h"
 
@@ -55,19 +54,24 @@ static void emitter_at(const struct emitter *emitter, int i, int j, int n, struc
 }
 
 /* Adds one light sample to the visibility sums. */
-static pnb_result add_sample(struct frame *frame, const struct light_views *views, const vec4 normal,
-                             const struct gl_texture *map) {
+static pnb_result add_sample(struct frame *frame, const struct emitter *point, const struct light_views *views,
+                             const vec4 normal, const struct gl_texture *map) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = frame->gl;
-    const GLuint program = renderer->reference_program;
-    pnb_result result = timer_begin(&renderer->timer, "Visibility");
+    const struct program_desc desc = {.vertex = "pass_screen.vert",
+                                      .fragment = "pass_reference.frag",
+                                      .defines = {light_defines(point, views)}};
+    GLuint program;
+    pnb_result result = program_use(&renderer->programs, &desc, &program);
+    if (result != PNB_OK)
+        return result;
+    result = timer_begin(&renderer->timer, "Visibility");
     const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1};
     if (result != PNB_OK || (result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
     gl->Disable(GL_DEPTH_TEST);
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
-    gl->UseProgram(program);
     bind_gbuffer(renderer, program);
     if (views->count > 0)
         gl_texture_bind(gl, map, 3);
@@ -93,7 +97,7 @@ static pnb_result draw_sample(struct frame *frame, const struct emitter *emitter
     if (result != PNB_OK)
         return result;
     light_block_upload(frame->renderer, &point, &views);
-    return add_sample(frame, &views, normal, map);
+    return add_sample(frame, &point, &views, normal, map);
 }
 
 static pnb_result reference_draw(struct frame *frame, const struct frame_light *light) {
