@@ -20,11 +20,11 @@ static const char help[] =
     "OUTPUT is written completely or not at all.\n\n"
     "  -o, --output FILE           what to write\n"
     "  -t, --technique ID          shadow technique; 'penumbra info' lists them\n"
-    "      --pass NAME             Combined (default), Depth, Normal, Shadow or Shadow.LIGHT; makes an\n"
-    "                              .exr with only this pass\n"
+    "      --pass NAME             Combined (default), Depth, Normal, Shadow or Shadow.LIGHT;\n"
+    "                              for an .exr: write only this pass\n"
     "      --exposure STOPS        PNG: brighten by so many stops\n"
-    "      --repeat N              render N times, report the median time and whether all images are\n"
-    "                              identical (exit status 1 if not)\n";
+    "      --repeat N              render N times, report the median time and whether all images\n"
+    "                              are identical (exit status 1 if not)\n";
 
 struct render_options {
     struct replay_options replay;
