@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Jobs on one thread: waiting, progress, cancelling, results, and jobs that outlive their context. */
+#include "render/job.h"
 #include "support.h"
 
 #include <time.h>
@@ -114,6 +115,50 @@ static void progress_never_falls(void) {
     CHECK_INT(progress.samples, 16);
     CHECK(progress.text[0]);
     CHECK_RESULT(pnb_job_wait(job, UINT32_MAX, NULL), PNB_OK);
+    pnb_job_destroy(&job);
+}
+
+static void progress_is_kept_in_range(void) {
+    pnb_job *job = NULL;
+    pnb_progress progress = PNB_INIT(pnb_progress);
+    CHECK_RESULT(start(8, &job), PNB_OK);
+    pnb_job_cancel(job); /* the renderer reports no more of it */
+    pnb_job_wait(job, UINT32_MAX, NULL);
+    job->result = PNB_OK;
+    float before = job->progress.fraction;
+    const struct {
+        float fraction, expected;
+        uint32_t sample, expected_sample;
+    } rows[] = {{NAN, before, 0, job->progress.sample},
+                {0.9f, 0.9f, 5, 5},
+                {0.5f, 0.9f, 3, 5},
+                {-INFINITY, 0.9f, 7, 7},
+                {7.0f, 1.0f, 99, 8}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        job_set_progress(job, rows[i].fraction, rows[i].sample, "Testing");
+        CHECK_RESULT(pnb_job_wait(job, 0, &progress), PNB_OK);
+        CHECK_NEAR(progress.fraction, rows[i].expected, 0);
+        CHECK_INT(progress.sample, rows[i].expected_sample);
+        CHECK_STRING(progress.text, "Testing");
+    }
+    pnb_job_destroy(&job);
+}
+
+static void timings_of_one_name_are_added(void) {
+    pnb_job *job = NULL;
+    pnb_timing timing = PNB_INIT(pnb_timing);
+    CHECK_RESULT(pnb_render(context, small_scene_get(&small), &small.settings, &job), PNB_OK);
+    uint32_t count = pnb_job_timing_count(job);
+    CHECK_RESULT(job_add_timing(job, "a pass", 1.0, 10.0, 100), PNB_OK);
+    CHECK_RESULT(job_add_timing(job, "another", 7.0, 7.0, 7), PNB_OK);
+    CHECK_RESULT(job_add_timing(job, "a pass", 2.0, 20.0, 50), PNB_OK);
+    CHECK_INT(pnb_job_timing_count(job), count + 2);
+    CHECK_RESULT(pnb_job_get_timing(job, count, &timing), PNB_OK);
+    CHECK_STRING(timing.name, "a pass");
+    CHECK_INT(timing.count, 2);
+    CHECK_NEAR(timing.gpu_ms, 3, 0);
+    CHECK_NEAR(timing.cpu_ms, 30, 0);
+    CHECK(timing.bytes == 100);
     pnb_job_destroy(&job);
 }
 
@@ -295,6 +340,8 @@ int main(void) {
     results_check_their_arguments();
     bad_renders_are_refused();
     progress_never_falls();
+    progress_is_kept_in_range();
+    timings_of_one_name_are_added();
     running_jobs_are_cancelled();
     queued_jobs_are_cancelled_at_once();
     done_jobs_cannot_be_cancelled();
