@@ -184,6 +184,9 @@ static pnb_result start(pnb_context *context, const pnb_scene *scene, const pnb_
     if (result == PNB_OK) {
         result = scene_create(scene, &job->messages, &job->scene);
     }
+    if (result == PNB_OK) {
+        scene_camera_fit(&job->scene->camera, job->settings.width, job->settings.height);
+    }
     if (result != PNB_OK) {
         release(job);
         return result;
