@@ -5,7 +5,7 @@ uniform vec4 base_color; // rgb, alpha
 
 #ifdef TEXTURED
 uniform sampler2D base_color_texture, alpha_texture;
-uniform vec4 texture_use; // x: base_color_texture, y: alpha_texture; z: channel of alpha, 0 = red, 1 = alpha
+uniform vec4 texture_use; // x: base_color_texture, y: alpha_texture; z: 1 = alpha is the texture's own, 0 = its grey
 
 vec4 material_color(vec2 uv) {
     vec4 color = base_color;
@@ -13,7 +13,8 @@ vec4 material_color(vec2 uv) {
         color.rgb *= texture(base_color_texture, uv).rgb;
     if (texture_use.y != 0.0) {
         vec4 texel = texture(alpha_texture, uv);
-        color.a *= clamp(texture_use.z != 0.0 ? texel.a : texel.r, 0.0, 1.0);
+        float grey = dot(texel.rgb, vec3(0.2126, 0.7152, 0.0722)); // luminance, as Blender converts colours
+        color.a *= clamp(texture_use.z != 0.0 ? texel.a : grey, 0.0, 1.0);
     }
     return color;
 }

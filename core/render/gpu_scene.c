@@ -25,7 +25,7 @@ struct draw {
 struct gpu_material {
     vec4 base_color; /* rgb, alpha */
     const struct gpu_image *base_color_texture, *alpha_texture;
-    bool alpha_in_red, transparent, textured;
+    bool alpha_is_grey, transparent, textured;
 };
 
 struct gpu_scene {
@@ -100,7 +100,7 @@ static pnb_result load_materials(struct gpu_scene *scene, const struct scene *fr
             result = gpu_cache_image(&scene->cache, source->alpha_texture, &material->alpha_texture);
         if (result != PNB_OK)
             return result;
-        material->alpha_in_red = source->alpha_texture && !source->alpha_texture->has_alpha;
+        material->alpha_is_grey = source->alpha_texture && !source->alpha_texture->has_alpha;
         material->transparent = source->alpha < 1.0f || source->alpha_texture;
         material->textured = source->base_color_texture || source->alpha_texture;
     }
@@ -244,7 +244,7 @@ static void bind_material(const struct gl *gl, GLuint program, const struct gpu_
     if (!textures)
         return;
     const vec4 use = {material->base_color_texture ? 1.0f : 0.0f, material->alpha_texture ? 1.0f : 0.0f,
-                      material->alpha_in_red ? 0.0f : 1.0f, 0.0f};
+                      material->alpha_is_grey ? 0.0f : 1.0f, 0.0f};
     program_set_vec4(gl, program, "texture_use", use);
     program_set_int(gl, program, "base_color_texture", 0);
     program_set_int(gl, program, "alpha_texture", 1);
