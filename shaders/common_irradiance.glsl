@@ -16,22 +16,18 @@ struct polygon_walk {
 };
 
 void polygon_edge(inout polygon_walk walk, vec3 a, vec3 b) {
-    if (a.z <= 0.0 && b.z <= 0.0)
+    bool a_above = a.z > 0.0, b_above = b.z > 0.0;
+    if (!a_above && !b_above)
         return;
-    if (a.z > 0.0 && b.z > 0.0) {
-        walk.sum += edge_term(a, b);
+    vec3 crossing = vec3(mix(a.xy, b.xy, a_above == b_above ? 0.0 : a.z / (a.z - b.z)), 0.0);
+    walk.sum += edge_term(a_above ? a : crossing, b_above ? b : crossing);
+    if (a_above == b_above)
         return;
-    }
-    vec3 crossing = mix(a, b, a.z / (a.z - b.z));
-    crossing.z = 0.0;
     walk.crosses = true;
-    if (a.z > 0.0) {
+    if (a_above)
         walk.leave = crossing;
-        walk.sum += edge_term(a, crossing);
-    } else {
+    else
         walk.entry = crossing;
-        walk.sum += edge_term(crossing, b);
-    }
 }
 
 // Form factor times pi of a rectangle or ellipse. A 16-gon of the ellipse's area stands for it: within 0.3 %.

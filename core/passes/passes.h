@@ -28,7 +28,7 @@ struct renderer {
     const struct gl *gl;
     struct gpu_scene *scene;
     struct timer timer;
-    GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer, box_buffer;
+    GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer, box_buffer, pixel_buffer;
     struct program_cache programs;
 
     /* G-buffer, W x H: see common_camera.glsl for the contents. */
@@ -37,8 +37,6 @@ struct renderer {
     /* Sums over the samples, RGBA32F, W x H. */
     struct gl_texture combined, shadowed, unshadowed, normal;
     struct gl_texture light_shadows[MAX_LIGHTS];
-    /* Resolved images, RGBA32F, W x H. */
-    struct gl_texture out_combined, out_shadow, out_normal;
 };
 
 /* gbuffer.c: scene -> gbuffer_* of the frame's sample. */
@@ -59,12 +57,13 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
 const char *light_defines(const struct emitter *emitter, const struct light_views *views);
 /* Binds gbuffer_depth, _normal and _color as the current program's samplers. */
 void bind_gbuffer(struct renderer *renderer, GLuint program);
-/* shading.c: clears the sums; adds background, ambient and normal; adds one light's radiance and irradiance. */
-pnb_result pass_clear_sums(struct frame *frame);
-pnb_result pass_base(struct frame *frame);
-pnb_result pass_shading(struct frame *frame, uint32_t light);
-/* resolve.c: keeps what is wanted of the first sample alone (depth); sums -> images of the job, read back. */
-pnb_result pass_first_sample(struct frame *frame);
+/* shading.c: makes the sums; adds to them one light's radiance and irradiance, and with the first one of a sample what
+ * needs no light: background, ambient light and normal. light NULL: nothing but that. */
+pnb_result pass_prepare_sums(struct frame *frame);
+pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bool first);
+/* resolve.c: makes the job's images; fills what is wanted of the first sample alone (depth); sums -> images. */
+pnb_result pass_create_images(struct frame *frame);
+pnb_result pass_resolve_first_sample(struct frame *frame);
 pnb_result pass_resolve(struct frame *frame);
 
 /* Draws one triangle over the bound target with the current program. */

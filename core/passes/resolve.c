@@ -1,109 +1,94 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-#include "../memory.h"
 #include "passes.h"
 
 #include <stdio.h>
 
-#define NO_DEPTH 1e10f /* Blender's value where there is nothing */
+/* Largest buffer an image is packed into at once, bytes; larger images take several bands of rows. */
+#define BAND_BYTES (32u << 20)
 
-static pnb_result read_pixels(struct frame *frame, const struct gl_texture *texture, GLenum format, float *pixels) {
+static const struct image_kind {
+    uint32_t pass;
+    const char *name, *define;
+    uint32_t channels;
+} kinds[] = {{PNB_PASS_COMBINED, "Combined", "#define COMBINED\n", 4},
+             {PNB_PASS_DEPTH, "Depth", "#define DEPTH\n", 1},
+             {PNB_PASS_NORMAL, "Normal", "#define NORMAL\n", 3},
+             {PNB_PASS_SHADOW, "Shadow", "#define SHADOW\n", 3},
+             {PNB_PASS_LIGHT_SHADOWS, "Shadow.", "#define LIGHT_SHADOW\n", 3}};
+
+pnb_result pass_create_images(struct frame *frame) {
+    for (int i = 0; i < IMAGE_KINDS; i++) {
+        if (!(frame->settings->passes & kinds[i].pass))
+            continue;
+        const uint32_t count = i == IMAGE_LIGHT_SHADOWS ? frame->scene->light_count : 1;
+        for (uint32_t k = 0; k < count; k++) {
+            char name[256];
+            snprintf(name, sizeof name, "%s%s", kinds[i].name, i == IMAGE_LIGHT_SHADOWS ? frame->scene->lights[k].name : "");
+            frame->images[i + (int)k] = job_add_image(frame->job, name, kinds[i].channels);
+            if (!frame->images[i + (int)k])
+                return PNB_ERROR_OUT_OF_MEMORY;
+        }
+    }
+    return PNB_OK;
+}
+
+/* Packs a band of rows and copies it to the host. */
+static pnb_result resolve_band(struct frame *frame, GLuint program, int channels, int row, int rows, float *pixels) {
     const struct gl *gl = frame->gl;
-    const struct gl_target target = {.colors = {texture}, .color_count = 1};
-    pnb_result result = gl_target_bind(gl, frame->renderer->framebuffer, &target);
-    if (result != PNB_OK)
-        return result;
-    gl->ReadBuffer(GL_COLOR_ATTACHMENT0);
-    gl->PixelStorei(GL_PACK_ALIGNMENT, 4);
-    gl->ReadPixels(0, 0, frame->width, frame->height, format, GL_FLOAT, pixels);
+    const size_t row_bytes = (size_t)frame->width * (size_t)channels * sizeof *pixels;
+    gl->Uniform2iv(gl->GetUniformLocation(program, "band"), 1, (const int[2]){row, rows});
+    gl->DispatchCompute((GLuint)(frame->width + 15) / 16, (GLuint)(rows + 3) / 4, 1);
+    gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(row_bytes * (size_t)rows),
+                         (char *)pixels + row_bytes * (size_t)row);
     return gl_check(gl, "read-back");
 }
 
-/* A new image of the job with what the texture holds. */
-static pnb_result read_back(struct frame *frame, const struct gl_texture *texture, GLenum format, const char *name,
-                            uint32_t channels, float **pixels) {
-    *pixels = job_add_image(frame->job, name, channels);
-    return *pixels ? read_pixels(frame, texture, format, *pixels) : PNB_ERROR_OUT_OF_MEMORY;
-}
-
-static pnb_result draw_resolve(struct frame *frame) {
+/* From the sums, or the G-buffer for depth, to the host's image, if it is wanted. */
+static pnb_result resolve_image(struct frame *frame, int index, const struct gl_texture *source,
+                                const struct gl_texture *divisor) {
+    const struct image_kind *kind = &kinds[index < IMAGE_LIGHT_SHADOWS ? index : IMAGE_LIGHT_SHADOWS];
+    float *pixels = frame->images[index];
+    if (!pixels)
+        return PNB_OK;
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    struct gl_texture *outputs[] = {&renderer->out_combined, &renderer->out_shadow, &renderer->out_normal};
-    const struct gl_texture *sums[] = {&renderer->combined, &renderer->shadowed, &renderer->unshadowed, &renderer->normal};
-    static const char *const names[] = {"combined", "shadowed", "unshadowed", "normal"};
-    pnb_result result = PNB_OK;
-    for (int i = 0; i < 3 && result == PNB_OK; i++)
-        result = gl_texture_ensure(gl, outputs[i], GL_RGBA32F, frame->width, frame->height, 0, 1);
-    const struct gl_target target = {.colors = {outputs[0], outputs[1], outputs[2]}, .color_count = 3};
-    if (result != PNB_OK || (result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
-        return result;
-    gl->Disable(GL_BLEND);
-    gl->Disable(GL_DEPTH_TEST);
-    static const struct program_desc desc = {.vertex = "pass_screen.vert", .fragment = "pass_resolve.frag"};
+    const struct program_desc desc = {.compute = "pass_resolve.comp", .defines = {kind->define}};
     GLuint program;
-    if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK)
+    pnb_result result = program_use(&renderer->programs, &desc, &program);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Resolve and read-back")) != PNB_OK)
         return result;
-    for (int i = 0; i < 4; i++) {
-        gl_texture_bind(gl, sums[i], i);
-        program_set_int(gl, program, names[i], i);
-    }
+    gl_texture_bind(gl, source, 0);
+    gl_texture_bind(gl, divisor ? divisor : source, 1);
+    program_set_int(gl, program, "source", 0);
+    program_set_int(gl, program, "divisor", 1);
     program_set_float(gl, program, "sample_weight", 1.0f / (float)frame->settings->samples);
-    draw_screen(renderer);
-    return gl_check(gl, "resolve");
-}
-
-/* The share of each light: a plain average over the samples. */
-static pnb_result resolve_light(struct frame *frame, uint32_t light) {
-    char name[256];
-    snprintf(name, sizeof name, "Shadow.%s", frame->scene->lights[light].name);
-    float *pixels;
-    pnb_result result = read_back(frame, &frame->renderer->light_shadows[light], GL_RGB, name, 3, &pixels);
-    if (result != PNB_OK)
-        return result;
-    const float weight = 1.0f / (float)frame->settings->samples;
-    for (size_t i = 0; i < 3 * (size_t)frame->width * (size_t)frame->height; i++)
-        pixels[i] *= weight;
-    return PNB_OK;
+    const int row_bytes = frame->width * (int)kind->channels * (int)sizeof(float);
+    int band = (int)(BAND_BYTES / (unsigned)row_bytes);
+    band = band < 1 ? 1 : band > frame->height ? frame->height : band;
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, renderer->pixel_buffer);
+    gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)row_bytes * band, NULL, GL_STREAM_READ);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, renderer->pixel_buffer);
+    for (int row = 0; row < frame->height && result == PNB_OK; row += band)
+        result = resolve_band(frame, program, (int)kind->channels, row,
+                              band < frame->height - row ? band : frame->height - row, pixels);
+    timer_end(&renderer->timer, (uint64_t)row_bytes * (uint64_t)band);
+    return result;
 }
 
 /* Depth is not averaged over the samples: the mean of two surfaces is the depth of neither. */
-pnb_result pass_first_sample(struct frame *frame) {
-    const size_t count = (size_t)frame->width * (size_t)frame->height;
-    if (!(frame->settings->passes & PNB_PASS_DEPTH))
-        return PNB_OK;
-    frame->first_depth = memory_array(count, sizeof *frame->first_depth);
-    if (!frame->first_depth)
-        return PNB_ERROR_OUT_OF_MEMORY;
-    return read_pixels(frame, &frame->renderer->gbuffer_depth, GL_RED, frame->first_depth);
-}
-
-static pnb_result add_depth(struct frame *frame) {
-    float *pixels = job_add_image(frame->job, "Depth", 1);
-    if (!pixels)
-        return PNB_ERROR_OUT_OF_MEMORY;
-    for (size_t i = 0; i < (size_t)frame->width * (size_t)frame->height; i++)
-        pixels[i] = frame->first_depth[i] > 0.0f ? frame->first_depth[i] : NO_DEPTH;
-    return PNB_OK;
+pnb_result pass_resolve_first_sample(struct frame *frame) {
+    return resolve_image(frame, IMAGE_DEPTH, &frame->renderer->gbuffer_depth, NULL);
 }
 
 pnb_result pass_resolve(struct frame *frame) {
     struct renderer *renderer = frame->renderer;
-    const uint32_t passes = frame->settings->passes;
-    pnb_result result = timer_begin(&renderer->timer, "Resolve and read-back");
-    if (result != PNB_OK)
+    pnb_result result;
+    if ((result = resolve_image(frame, IMAGE_COMBINED, &renderer->combined, NULL)) != PNB_OK ||
+        (result = resolve_image(frame, IMAGE_NORMAL, &renderer->normal, NULL)) != PNB_OK ||
+        (result = resolve_image(frame, IMAGE_SHADOW, &renderer->shadowed, &renderer->unshadowed)) != PNB_OK)
         return result;
-    float *pixels;
-    result = draw_resolve(frame);
-    if (result == PNB_OK && (passes & PNB_PASS_COMBINED))
-        result = read_back(frame, &renderer->out_combined, GL_RGBA, "Combined", 4, &pixels);
-    if (result == PNB_OK && (passes & PNB_PASS_DEPTH))
-        result = add_depth(frame);
-    if (result == PNB_OK && (passes & PNB_PASS_NORMAL))
-        result = read_back(frame, &renderer->out_normal, GL_RGB, "Normal", 3, &pixels);
-    if (result == PNB_OK && (passes & PNB_PASS_SHADOW))
-        result = read_back(frame, &renderer->out_shadow, GL_RGB, "Shadow", 3, &pixels);
-    for (uint32_t i = 0; i < frame->scene->light_count && result == PNB_OK && (passes & PNB_PASS_LIGHT_SHADOWS); i++)
-        result = resolve_light(frame, i);
-    timer_end(&renderer->timer, gl_texture_bytes(&renderer->out_combined) * 3);
+    for (uint32_t i = 0; i < frame->scene->light_count && result == PNB_OK; i++)
+        result = resolve_image(frame, IMAGE_LIGHT_SHADOWS + (int)i, &renderer->light_shadows[i], NULL);
     return result;
 }

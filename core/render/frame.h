@@ -26,6 +26,9 @@ struct frame_light {
     struct gl_texture shadow_map, min_max; /* a layer per view; kept over the samples of a pixel */
 };
 
+/* Images of a job; those of the lights follow one another. */
+enum { IMAGE_COMBINED, IMAGE_DEPTH, IMAGE_NORMAL, IMAGE_SHADOW, IMAGE_LIGHT_SHADOWS, IMAGE_KINDS };
+
 struct frame {
     const struct gl *gl;
     struct renderer *renderer;
@@ -44,7 +47,7 @@ struct frame {
     size_t coarse_receiver_count;
     struct box *casters;       /* bounds of the instances that cast shadows */
     size_t caster_count;
-    float *first_depth;        /* gbuffer_depth of sample 0, for the Depth pass */
+    float *images[IMAGE_LIGHT_SHADOWS + MAX_LIGHTS]; /* pixels of the job's images, NULL: not wanted */
 
     struct frame_light lights[MAX_LIGHTS];
 };

@@ -18,8 +18,8 @@ pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
     gl->GenFramebuffers(1, &renderer->framebuffer);
     gl->GenVertexArrays(1, &renderer->empty_vertex_array);
     GLuint *const buffers[] = {&renderer->camera_buffer, &renderer->light_buffer, &renderer->tap_buffer,
-                               &renderer->box_buffer};
-    for (int i = 0; i < 4; i++)
+                               &renderer->box_buffer,    &renderer->pixel_buffer};
+    for (int i = 0; i < 5; i++)
         gl->GenBuffers(1, buffers[i]);
     pnb_result result = gpu_scene_create(gl, &renderer->scene);
     if (result == PNB_OK)
@@ -42,12 +42,13 @@ void renderer_destroy(struct renderer **out) {
     program_cache_free(&renderer->programs);
     gl->DeleteFramebuffers(1, &renderer->framebuffer);
     gl->DeleteVertexArrays(1, &renderer->empty_vertex_array);
-    const GLuint buffers[] = {renderer->camera_buffer, renderer->light_buffer, renderer->tap_buffer, renderer->box_buffer};
-    gl->DeleteBuffers(4, buffers);
+    const GLuint buffers[] = {renderer->camera_buffer, renderer->light_buffer, renderer->tap_buffer, renderer->box_buffer,
+                              renderer->pixel_buffer};
+    gl->DeleteBuffers(5, buffers);
     struct gl_texture *const textures[] = {
         &renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color, &renderer->gbuffer_z,
         &renderer->visibility,    &renderer->combined,       &renderer->shadowed,      &renderer->unshadowed,
-        &renderer->normal,        &renderer->out_combined,   &renderer->out_shadow,    &renderer->out_normal};
+        &renderer->normal};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         gl_texture_free(gl, textures[i]);
     for (int i = 0; i < MAX_LIGHTS; i++)
@@ -145,7 +146,7 @@ static pnb_result draw_light(struct frame *frame, uint32_t index) {
     if (result != PNB_OK)
         return result;
     light_block_upload(renderer, &light->emitter, &light->views);
-    return pass_shading(frame, index);
+    return pass_shading(frame, light, index == 0);
 }
 
 /* Every sample of the lights first .. last - 1, whose maps are in memory. */
@@ -155,10 +156,10 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
         camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
         if (!(first == 0 && frame->sample == 0 && frame->gbuffer_is_first_sample))
             result = pass_gbuffer(frame);
-        if (result == PNB_OK && first == 0)
-            result = pass_base(frame);
+        if (result == PNB_OK && frame->scene->light_count == 0)
+            result = pass_shading(frame, NULL, true);
         if (result == PNB_OK && first == 0 && frame->sample == 0)
-            result = pass_first_sample(frame);
+            result = pass_resolve_first_sample(frame);
         for (uint32_t i = first; i < last && result == PNB_OK; i++)
             result = draw_light(frame, i);
     }
@@ -168,7 +169,8 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
 static pnb_result draw_frame(struct frame *frame) {
     pnb_result result;
     if ((result = gpu_scene_update(frame->renderer->scene, frame)) != PNB_OK ||
-        (result = find_receivers(frame)) != PNB_OK || (result = pass_clear_sums(frame)) != PNB_OK)
+        (result = find_receivers(frame)) != PNB_OK || (result = pass_prepare_sums(frame)) != PNB_OK ||
+        (result = pass_create_images(frame)) != PNB_OK)
         return result;
     fit_lights(frame);
     const uint32_t count = frame->scene->light_count;
@@ -206,7 +208,6 @@ pnb_result renderer_run(struct renderer *renderer, struct pnb_job *job) {
     memory_free(frame->receivers);
     memory_free(frame->coarse_receivers);
     memory_free(frame->casters);
-    memory_free(frame->first_depth);
     memory_free(frame);
     return result != PNB_OK ? result : timing;
 }
