@@ -19,7 +19,8 @@ def main():
     loader = unittest.defaultTestLoader
     suite = loader.loadTestsFromNames(names) if names else loader.discover(FOLDER)
     result = unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(suite)
-    failed = len(result.failures) + len(result.errors)
+    # A test may fail in several subtests.
+    failed = len({getattr(test, 'test_case', test).id() for test, _trace in result.failures + result.errors})
     skipped = f", {len(result.skipped)} skipped" if result.skipped else ""
     print(f"Blender {bpy.app.version_string}{skipped}")
     print(f"{result.testsRun - failed - len(result.skipped)} passed, {failed} failed", flush=True)

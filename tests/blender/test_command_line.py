@@ -85,5 +85,6 @@ class CommandLine(SceneTest):
                 rest, _ = process.communicate(timeout=120)
             finally:
                 process.kill()
+        self.assert_fails(process.returncode, rest.decode())
         self.assertNotIn(b"Sample 4096/4096", rest)
         self.assertNotIn(b"Traceback", rest)

@@ -434,8 +434,8 @@ class Lights(ExportTest):
         self.assert_close(area.matrix[0:3], (3, 0, 0))
         spot, _count = self.light('SPOT', spot_size=1.0, spot_blend=0.25, shadow_soft_size=0.125)
         self.assert_close((spot.spot_angle, spot.spot_blend, spot.radius), (1.0, 0.25, 0.125))
-        sun, _count = self.light('SUN', angle=0.1, energy=3)
-        self.assert_close((sun.angle, *sun.emission), (0.1, 3, 3, 3))
+        sun, _count = self.light('SUN', angle=0.01, energy=3)
+        self.assert_close((sun.angle, *sun.emission), (0.01, 3, 3, 3), 1e-4)
 
     def test_light_nodes(self):
         light = add_light("Light", 'POINT', energy=4 * math.pi).data

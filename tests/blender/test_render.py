@@ -19,6 +19,11 @@ def channels_by_pass(picture):
     return found
 
 
+def resident_bytes():
+    with open('/proc/self/statm', encoding='ascii') as file:
+        return int(file.read().split()[1]) * os.sysconf('SC_PAGE_SIZE')
+
+
 class Sizes(SceneTest):
     def setUp(self):
         super().setUp()
@@ -258,6 +263,27 @@ class Robustness(SceneTest):
             self.render()
         preferences.backend = ''
         self.render()
+
+    def test_no_growth(self):
+        """Memory stays where it is: 100 renders may add 4 MB, what one picture of each size class costs."""
+        self.still_life()
+        for _ in range(10):
+            bpy.ops.render.render()
+        before = resident_bytes()
+        for _ in range(100):
+            bpy.ops.render.render()
+        self.assertLess(resident_bytes() - before, 4e6)
+
+    def test_stereo(self):
+        self.still_life()
+        render = self.scene.render
+        render.use_multiview = True
+        render.image_settings.file_format = 'PNG'
+        render.filepath = output("stereo")
+        bpy.ops.render.render(write_still=True)
+        left, right = (read_byte_image(output(f"stereo_{eye}.png")) for eye in 'LR')
+        self.assertEqual(left[:2], right[:2])
+        self.assertNotEqual(left[2], right[2])
 
     def test_animation(self):
         """Three frames of a moving cube: three files that differ."""
