@@ -5,7 +5,8 @@ file(COPY ${FILES} ${LIBRARY} DESTINATION ${STAGE}/penumbra)
 
 # The sources carry version 0.0.0 in these two places.
 string(REPLACE "." ", " tuple ${VERSION})
-foreach(line "__init__.py|(0, 0, 0),  # set by the build|(${tuple})," "blender_manifest.toml|\"0.0.0\"  # set by the build|\"${VERSION}\"")
+foreach(line "__init__.py|(0, 0, 0),  # set by the build|(${tuple}),"
+             "blender_manifest.toml|\"0.0.0\"  # set by the build|\"${VERSION}\"")
   string(REPLACE "|" ";" parts "${line}")
   list(GET parts 0 name)
   list(GET parts 1 from)

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass, field
 
-from . import capi, compat, nodes, textures
+from . import compat, nodes, textures
 
 GREY = [0.8, 0.8, 0.8]
 
@@ -72,7 +72,7 @@ class _Reader:
             second.alpha_image, second.alpha_use = self.image(factor)
             return second
         if weight is None:
-            self.warn("a mix of shaders by nodes is only supported from Transparent, by an image; half of each is taken")
+            self.warn("shaders are mixed by nodes only from Transparent and by an image; half of each is taken")
             weight = 0.5
         return self.blend(first, second, min(max(weight, 0.0), 1.0))
 

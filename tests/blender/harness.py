@@ -131,6 +131,6 @@ def blender_command(*arguments):
 
 def run_blender(*arguments, environment=None):
     """Runs one; (exit code, everything it printed)."""
-    done = subprocess.run(blender_command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300, check=False,
-                          env={**os.environ, **(environment or {})})
+    done = subprocess.run(blender_command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300,
+                          check=False, env={**os.environ, **(environment or {})})
     return done.returncode, done.stdout.decode(errors='replace')
