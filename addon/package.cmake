@@ -20,9 +20,10 @@ foreach(line "__init__.py|(0, 0, 0),  # set by the build|(${tuple}),"
   file(WRITE ${STAGE}/penumbra/${name} "${text}")
 endforeach()
 
-# A fixed time makes equal contents equal files.
+# A fixed time and a sorted list make equal contents equal files.
 file(REMOVE ${ZIP})
+file(GLOB staged RELATIVE ${STAGE} ${STAGE}/penumbra/*)
 execute_process(
-  COMMAND ${CMAKE_COMMAND} -E tar cf ${ZIP} --format=zip --mtime=2000-01-01 penumbra
+  COMMAND ${CMAKE_COMMAND} -E tar cf ${ZIP} --format=zip --mtime=2000-01-01 ${staged}
   WORKING_DIRECTORY ${STAGE}
   COMMAND_ERROR_IS_FATAL ANY)
