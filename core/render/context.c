@@ -95,6 +95,7 @@ static void report_backend(pnb_context *context, const struct backend_report *re
 }
 
 static void close_gl(pnb_context *context) {
+    context->backend.gl.Disable(GL_DEBUG_OUTPUT); /* no call of the host while others may wait for the lock */
     gl_thread_lock();
     renderer_destroy(&context->renderer);
     backend_close(&context->backend);

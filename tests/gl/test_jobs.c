@@ -330,6 +330,38 @@ static void log_functions_cannot_hang(void) {
     small_scene_destroy(&broken);
 }
 
+/* Warnings are logged when the render is done and its job is not yet. */
+static void cancel_from_log(void *user, pnb_log_level level, const char *message) {
+    (void)level;
+    (void)message;
+    pnb_job_cancel(*(pnb_job **)user);
+}
+
+static void cancelling_counts_until_the_end(void) {
+    pnb_job *first = NULL, *job = NULL;
+    pnb_context *logged = NULL;
+    pnb_context_desc desc = PNB_INIT(pnb_context_desc);
+    desc.log = cancel_from_log;
+    desc.log_level = PNB_LOG_WARNING;
+    desc.log_user = &job;
+    struct small_scene broken;
+    pnb_settings many = small.settings;
+    many.samples = MANY_SAMPLES;
+    CHECK_RESULT(small_scene_create(&broken), PNB_OK);
+    const pnb_scene *scene = small_scene_get(&broken);
+    broken.instance.matrix[5] = NAN;
+    CHECK_RESULT(pnb_context_create(&desc, &logged), PNB_OK);
+    /* Holds the thread until `job` is written. */
+    CHECK_RESULT(pnb_render_start(logged, small_scene_get(&small), &many, &first), PNB_OK);
+    CHECK_RESULT(pnb_render_start(logged, scene, &broken.settings, &job), PNB_OK);
+    pnb_job_destroy(&first);
+    CHECK_RESULT(pnb_job_wait(job, UINT32_MAX, NULL), PNB_ERROR_CANCELLED);
+    CHECK_INT(pnb_job_image_count(job), 0);
+    pnb_job_destroy(&job);
+    pnb_context_destroy(&logged);
+    small_scene_destroy(&broken);
+}
+
 int main(void) {
     if (create_context(NULL, &context) != PNB_OK) {
         printf("skipped: %s\n", pnb_last_error());
@@ -351,6 +383,7 @@ int main(void) {
     scenes_are_copied();
     warnings_name_objects_and_are_logged();
     log_functions_cannot_hang();
+    cancelling_counts_until_the_end();
     pnb_context_destroy(&context);
     small_scene_destroy(&small);
     CHECK_INT(memory_live_blocks(), 0);
