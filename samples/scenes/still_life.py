@@ -33,11 +33,11 @@ def wood(u, v):
 def ground():
     table = s.image_material("table", 512, 512, wood)
     place("Table", s.grid_mesh("table", (2.6, 1.5), (1, 1), table))
-    wall = s.grid_mesh("wall", (5.0, 3.0), (1, 1), mat("wall"))
-    place("Wall", wall, transform((0, 0.75, 1.2), (90, 0, 0)))
+    wall = s.grid_mesh("wall", (3.2, 1.7), (1, 1), mat("wall"))
+    place("Wall", wall, transform((0.2, 0.75, 0.75), (90, 0, 0)))
     cloth = s.material("cloth", LINEN)
     fold = s.grid_mesh("cloth", (0.9, 0.62), (60, 40), cloth,
-                       lambda x, y: 0.004 + 0.006 * (1 + math.sin(9 * x + 4 * y)) * (0.3 + abs(x) + abs(y)) ** 2)
+                       lambda x, y: 0.002 + 0.003 * (1 + math.sin(9 * x + 4 * y)) * (0.3 + abs(x) + abs(y)) ** 2)
     place("Cloth", fold, transform((-0.08, -0.08, 0), (0, 0, 9)))
 
 
@@ -188,6 +188,6 @@ def build():
     candlestick(0.36, 0.07, books(0.34, 0.05))
     vase_with_twigs(0.10, 0.27)
     mobile(-0.30, -0.12, 0.66)
-    s.area_light("Window", s.aim((-1.35, -0.62, 0.86), (0.1, 0.1, 0.08)), 40, (0.46, 0.30), "RECTANGLE", (1.0, 0.93, 0.82))
+    s.area_light("Window", s.aim((-1.90, -0.92, 1.18), (0.15, 0.1, 0.15)), 80, (0.64, 0.42), "RECTANGLE", (1.0, 0.93, 0.82))
     s.world((0.055, 0.065, 0.085))
     s.camera((0.14, -1.72, 0.86), (0.06, 0.0, 0.235), 42)
