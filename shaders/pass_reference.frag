@@ -37,6 +37,13 @@ void main() {
     int layer = light_layer(position);
     if (layer < 0 || light.casts_shadow == 0.0 || texelFetch(gbuffer_color, pixel, 0).a < 1.0)
         return;
-    receiver r = receiver_create(position, octahedral_decode(normals.zw), layer);
+    // A point of the light behind the surface itself lights nothing, whatever the shading normal says.
+    vec3 geometric = octahedral_decode(normals.zw);
+    vec3 to_light = LIGHT_TYPE == SUN ? -light.frame_z.xyz : light.position.xyz - position;
+    if (dot(geometric, to_light) <= 0.0) {
+        out_visibility.rgb = vec3(0.0);
+        return;
+    }
+    receiver r = receiver_create(position, geometric, layer);
     out_visibility.rgb *= 1.0 - blocked_bilinear(r, r.center);
 }

@@ -24,6 +24,8 @@ void main() {
     int layer = light_layer(position);
     if (layer < 0 || light.casts_shadow == 0.0 || texelFetch(gbuffer_color, pixel, 0).a < 1.0)
         return;
-    receiver r = receiver_create(position, octahedral_decode(normals.zw), layer);
-    out_visibility.rgb = technique_visibility(r);
+    // Light wholly behind the surface itself lights nothing, whatever the shading normal says.
+    vec3 geometric = octahedral_decode(normals.zw);
+    receiver r = receiver_create(position, geometric, layer);
+    out_visibility.rgb = light_reaches(position, geometric) ? technique_visibility(r) : vec3(0.0);
 }
