@@ -6,7 +6,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* llvmpipe compiles shaders on the thread that draws; the default of some hosts' ulimit is too small for LLVM. */
+/* llvmpipe compiles shaders on the thread that draws, and LLVM needs more than a small `ulimit -s` gives by default. */
 #define STACK_SIZE ((size_t)16 << 20)
 
 static pthread_mutex_t opening = PTHREAD_MUTEX_INITIALIZER;

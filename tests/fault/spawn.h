@@ -15,7 +15,7 @@ struct spawn {
     const char *argument;                       /* of the new program */
     const char *variables[SPAWN_MAX_VARIABLES]; /* "NAME=value", ended by NULL */
     rlim_t address_space;                       /* bytes; 0: unlimited */
-    rlim_t files;                               /* 0: as it is */
+    rlim_t stack;                               /* bytes of every thread's stack by default; 0: as it is */
 };
 
 static inline void limit(int resource, rlim_t value) {
@@ -33,7 +33,7 @@ static inline void become(const struct spawn *spawn, int output) {
     dup2(output, STDERR_FILENO);
     alarm(300); /* a hang is a failure */
     limit(RLIMIT_AS, spawn->address_space);
-    limit(RLIMIT_NOFILE, spawn->files);
+    limit(RLIMIT_STACK, spawn->stack);
     execl("/proc/self/exe", "test", spawn->argument, (char *)NULL);
     _exit(127);
 }

@@ -68,6 +68,8 @@ static const struct row rows[] = {
      "PNB_OK",
      {"render PNB_OK"}},
     {"no shader cache", ENVIRONMENT("MESA_SHADER_CACHE_DISABLE=true"), "PNB_OK", {"render PNB_OK"}},
+    /* LLVM compiles on our thread's stack, for which this would be too little. */
+    {"small stacks", {.variables = {"MESA_SHADER_CACHE_DISABLE=true"}, .stack = 64 << 10}, "PNB_OK", {"render PNB_OK"}},
     {"one llvmpipe thread", ENVIRONMENT("LP_NUM_THREADS=0"), "PNB_OK", {"render PNB_OK"}},
     {"decimal comma", ENVIRONMENT("LC_ALL=de_DE.UTF-8"), "PNB_OK", {"render PNB_OK"}},
 
