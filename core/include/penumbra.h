@@ -9,7 +9,8 @@
  *
  * Conventions, unless a declaration says otherwise:
  *  - Units are metres, radians and watts. World space is right-handed with Z up. Matrices are 4 x 4 floats in
- *    column-major order (translation in elements 12..14), object to world.
+ *    column-major order (translation in elements 12..14), object to world. Whatever reaches farther than 1e9 m from
+ *    the world's origin is dropped with a warning.
  *  - Every structure starts with `struct_size`, to be set to sizeof the structure (PNB_INIT does it). All other
  *    members zero mean the documented defaults. A size the library does not know is PNB_ERROR_INVALID_ARGUMENT.
  *  - Descriptions are copied during the call; the library keeps no pointer into host memory.

@@ -87,7 +87,7 @@ static bool instance_is_usable(const pnb_instance *instance) {
             double extent = fmax(fabs((double)mesh->bounds[0][i]), fabs((double)mesh->bounds[1][i]));
             largest += fabs((double)matrix[4 * i + row]) * extent;
         }
-        if (largest > (double)LARGEST_NUMBER) {
+        if (largest > (double)LARGEST_COORDINATE) {
             return false;
         }
     }

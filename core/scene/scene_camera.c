@@ -22,8 +22,9 @@ static void window_set(float window[4], float half_width, float half_height) {
 
 static void camera_resolve_matrix(struct scene_camera *camera, struct messages *messages) {
     float *matrix = camera->matrix;
-    if (!numbers_usable(matrix, 16)) {
-        messages_add(messages, "camera: its matrix is not finite; it looks down from the origin instead");
+    if (!numbers_usable(matrix, 16) || !numbers_within(matrix + 12, 3, LARGEST_COORDINATE)) {
+        messages_add(messages, "camera: its matrix is not finite or leads too far away; it looks down from the origin "
+                               "instead");
         memset(matrix, 0, sizeof camera->matrix);
     } else if (axes_complete(matrix)) {
         messages_add(messages, "camera: its matrix is singular (a scale of 0?); the missing axes are made up");

@@ -72,10 +72,11 @@ static bool light_is_usable(const struct scene_light *light) {
     const float others[] = {light->size[0], light->size[1],    light->radius,
                             light->angle,   light->spot_angle, light->spot_blend};
     bool usable = numbers_usable(light->matrix, 16) && numbers_usable(light->emission, 3) &&
-                  numbers_usable(others, sizeof others / sizeof *others);
+                  numbers_within(light->matrix + 12, 3, LARGEST_COORDINATE) &&
+                  numbers_within(others, sizeof others / sizeof *others, LARGEST_COORDINATE);
     for (int i = 0; usable && i < 2; i++) {
         float width = light->size[i] * axis_length(light->matrix + 4 * i);
-        usable = numbers_usable(&width, 1);
+        usable = numbers_within(&width, 1, LARGEST_COORDINATE);
     }
     return usable;
 }
@@ -84,7 +85,7 @@ bool light_resolve(const pnb_light *from, const char *name, struct messages *mes
     *to = (struct scene_light){0};
     light_copy(from, to);
     if (!light_is_usable(to)) {
-        messages_add(messages, "light '%s': dropped: its matrix, emission or size is not finite", name);
+        messages_add(messages, "light '%s': dropped: its matrix, emission or size is not finite or too large", name);
         return false;
     }
     for (int i = 0; i < 3; i++) {

@@ -204,8 +204,8 @@ static void unusable_instances_are_dropped(void **state) {
     struct example *example = &fixture->example;
     example->instances[0].matrix[5] = NAN;
     example->instances[1].matrix[12] = INFINITY;
-    example->instances[2].matrix[0] = 9e17f; /* far away, but with what can be computed */
-    example->instances[3].matrix[0] = example->instances[3].matrix[4] = 9e17f;
+    example->instances[2].matrix[0] = 9e8f; /* far away, but with what can be computed */
+    example->instances[3].matrix[0] = example->instances[3].matrix[4] = 9e8f;
     const struct scene *scene = create(fixture);
     assert_int_equal(scene->instance_count, 1);
     assert_string_equal(scene->instances[0].name, "Pyramid");
