@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#define DEFAULT_PASSES (PNB_PASS_COMBINED | PNB_PASS_DEPTH | PNB_PASS_NORMAL | PNB_PASS_SHADOW)
+
 static uint32_t or_default(uint32_t value, uint32_t fallback) {
     return value ? value : fallback;
 }
@@ -20,6 +22,12 @@ static pnb_result check_size(const char *name, uint32_t value, uint32_t minimum,
     if (value > limit)
         return error_set(PNB_ERROR_UNSUPPORTED, "%s is %u, this OpenGL allows at most %u", name, value, limit);
     return check_range(name, value, minimum, limit);
+}
+
+static pnb_result check_bits(const char *name, uint32_t value, uint32_t known) {
+    if (!(value & ~known))
+        return PNB_OK;
+    return error_set(PNB_ERROR_INVALID_ARGUMENT, "settings: unknown %s 0x%x", name, value & ~known);
 }
 
 static pnb_result resolve_crop(const pnb_settings *from, struct settings *to) {
@@ -83,9 +91,11 @@ pnb_result settings_resolve(const pnb_settings *from, uint32_t max_texture_size,
         .filter_width = from->filter_width > 0.0f && from->filter_width < 100.0f ? from->filter_width : 1.5f,
         .shadow_map_size = or_default(from->shadow_map_size, 1024),
         .light_samples = or_default(from->light_samples, 16),
-        .passes = or_default(from->passes, PNB_PASS_COMBINED | PNB_PASS_DEPTH | PNB_PASS_NORMAL | PNB_PASS_SHADOW),
+        .passes = or_default(from->passes, DEFAULT_PASSES),
     };
-    if ((result = check_size("width", to->width, 1, max_texture_size)) != PNB_OK ||
+    if ((result = check_bits("flags", to->flags, PNB_SETTINGS_FILM_TRANSPARENT)) != PNB_OK ||
+        (result = check_bits("passes", to->passes, DEFAULT_PASSES | PNB_PASS_LIGHT_SHADOWS)) != PNB_OK ||
+        (result = check_size("width", to->width, 1, max_texture_size)) != PNB_OK ||
         (result = check_size("height", to->height, 1, max_texture_size)) != PNB_OK ||
         (result = check_size("shadow_map_size", to->shadow_map_size, 16, max_texture_size)) != PNB_OK ||
         (result = check_range("samples", to->samples, 1, 4096)) != PNB_OK ||
