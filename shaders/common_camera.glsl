@@ -11,9 +11,9 @@ layout(std140, binding = 0) uniform camera_block {
     float padding;
 } camera;
 
-// gbuffer_depth: metres along the camera axis, 0 = background.
+// gbuffer_depth: metres along the camera axis, negative = receives no shadow, 0 = background.
 // gbuffer_normal: octahedral shading normal (xy) and geometric normal (zw); both face the camera.
-// gbuffer_color: base colour, and 1 = receives shadows, 0.5 = does not, 0 = background.
+// gbuffer_color: base colour.
 
 vec2 octahedral_encode(vec3 n) {
     n /= abs(n.x) + abs(n.y) + abs(n.z);
@@ -34,7 +34,9 @@ vec2 camera_pixel(vec2 fragment) {
     return fragment + camera.image.zw;
 }
 
+// From gbuffer_depth to relative world space.
 vec3 camera_position(vec2 fragment, float depth) {
+    depth = abs(depth);
     vec2 p = camera.window.xy + camera_pixel(fragment) / camera.image.xy * camera.window.zw;
     vec3 across = p.x * camera.axis_x.xyz + p.y * camera.axis_y.xyz;
     return camera.perspective != 0.0 ? depth * (across - camera.axis_z.xyz) : across - depth * camera.axis_z.xyz;

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertices and instances of the scene (gpu_scene.h).
-
-struct instance {
-    vec4 rows[3];   // object to relative world
-    vec4 receives;  // x: 1 = receives shadows, 0.5 = does not
-};
-
-layout(std430, binding = 0) readonly buffer instance_block {
-    instance instances[];
-};
+// Vertices and instances of the scene (gpu_cache.h: struct vertex, struct instance_block).
 
 layout(location = 0) in vec3 vertex_position;
 layout(location = 1) in vec2 vertex_normal; // octahedral
 layout(location = 2) in vec2 vertex_uv;
-layout(location = 3) in uint vertex_instance;
+layout(location = 3) in vec4 instance_x;    // rows of object to relative world
+layout(location = 4) in vec4 instance_y;
+layout(location = 5) in vec4 instance_z;
+layout(location = 6) in float instance_receives; // 1 = receives shadows
 
 vec3 instance_position() {
-    instance i = instances[vertex_instance];
     vec4 p = vec4(vertex_position, 1.0);
-    return vec3(dot(i.rows[0], p), dot(i.rows[1], p), dot(i.rows[2], p));
+    return vec3(dot(instance_x, p), dot(instance_y, p), dot(instance_z, p));
 }

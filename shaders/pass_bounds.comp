@@ -21,7 +21,7 @@ void main() {
     float nearest = 3.4e38, farthest = 0.0;
     for (int y = first.y; y < last.y; y++)
         for (int x = first.x; x < last.x; x++) {
-            float depth = texelFetch(gbuffer_depth, ivec2(x, y), 0).r;
+            float depth = abs(texelFetch(gbuffer_depth, ivec2(x, y), 0).r);
             nearest = depth > 0.0 ? min(nearest, depth) : nearest;
             farthest = max(farthest, depth);
         }

@@ -34,7 +34,8 @@ void main() {
     vec3 shading = dot(normal, normal) > 0.0 ? normalize(normal) : geometric;
     if (dot(shading, geometric) < 0.0)
         shading = -shading;
-    out_depth = -dot(position, camera.axis_z.xyz);
+    float depth = -dot(position, camera.axis_z.xyz);
+    out_depth = receives != 0.0 ? depth : -depth;
     out_normal = vec4(octahedral_encode(shading), octahedral_encode(geometric));
-    out_color = vec4(min(color.rgb, vec3(65504.0)), receives);
+    out_color = vec4(min(color.rgb, vec3(65504.0)), 1.0);
 }

@@ -10,15 +10,14 @@ out vec2 uv;
 flat out float receives;
 
 void main() {
-    instance i = instances[vertex_instance];
     position = instance_position();
     // Cofactors of the matrix: right for any scale, mirrored and singular ones too.
-    vec3 a = i.rows[0].xyz, b = i.rows[1].xyz, c = i.rows[2].xyz;
+    vec3 a = instance_x.xyz, b = instance_y.xyz, c = instance_z.xyz;
     vec3 n = octahedral_decode(vertex_normal);
     normal = vec3(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n));
     if (dot(a, cross(b, c)) < 0.0)
         normal = -normal;
     uv = vertex_uv;
-    receives = i.receives.x;
+    receives = instance_receives;
     gl_Position = projection * vec4(position, 1.0);
 }

@@ -5,7 +5,7 @@
 #include "common_light.glsl"
 #include "common_shadow.glsl"
 
-uniform sampler2D gbuffer_depth, gbuffer_normal, gbuffer_color;
+uniform sampler2D gbuffer_depth, gbuffer_normal;
 uniform vec4 emitter_normal; // xyz: of the emitter's surface at the sample; w: 0 = shines equally everywhere
 uniform int uniform_weights; // 1: every sample counts the same, as in the papers
 
@@ -35,7 +35,7 @@ void main() {
         weight = 1.0;
     out_visibility = vec4(weight);
     int layer = light_layer(position);
-    if (layer < 0 || light.casts_shadow == 0.0 || texelFetch(gbuffer_color, pixel, 0).a < 1.0)
+    if (layer < 0 || light.casts_shadow == 0.0 || depth < 0.0)
         return;
     // A point of the light behind the surface itself lights nothing, whatever the shading normal says.
     vec3 geometric = octahedral_decode(normals.zw);

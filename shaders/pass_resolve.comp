@@ -24,7 +24,7 @@ void main() {
     pixels[4 * index + 2] = sum.b;
     pixels[4 * index + 3] = sum.a;
 #elif defined(DEPTH)
-    pixels[index] = sum.r > 0.0 ? sum.r : 1e10; // Blender's value where there is nothing
+    pixels[index] = sum.r != 0.0 ? abs(sum.r) : 1e10; // Blender's value where there is nothing
 #else
 #if defined(NORMAL)
     vec3 value = dot(sum.rgb, sum.rgb) > 0.0 ? normalize(sum.rgb) : vec3(0.0);

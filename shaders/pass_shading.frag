@@ -22,7 +22,7 @@ void main() {
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
     vec3 color = texelFetch(gbuffer_color, pixel, 0).rgb;
     vec3 normal = octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).xy);
-    bool covered = depth > 0.0;
+    bool covered = depth != 0.0;
     vec3 radiance = vec3(0.0), irradiance = vec3(0.0), visible = vec3(1.0);
 #ifdef LIGHT_TYPE
     vec4 v = texelFetch(visibility, pixel, 0);

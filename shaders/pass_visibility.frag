@@ -6,7 +6,7 @@
 #include "common_shadow.glsl"
 #include "technique"
 
-uniform sampler2D gbuffer_depth, gbuffer_normal, gbuffer_color;
+uniform sampler2D gbuffer_depth, gbuffer_normal;
 
 layout(location = 0) out vec4 out_visibility;
 
@@ -22,7 +22,7 @@ void main() {
         return;
     out_visibility = vec4(1.0);
     int layer = light_layer(position);
-    if (layer < 0 || light.casts_shadow == 0.0 || texelFetch(gbuffer_color, pixel, 0).a < 1.0)
+    if (layer < 0 || light.casts_shadow == 0.0 || depth < 0.0)
         return;
     // Light wholly behind the surface itself lights nothing, whatever the shading normal says.
     vec3 geometric = octahedral_decode(normals.zw);

@@ -104,7 +104,6 @@
     X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                                                                   \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                                                               \
     X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)                                                             \
-    X(PFNGLVERTEXATTRIBIPOINTERPROC, VertexAttribIPointer)                                                           \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                                             \
     X(PFNGLVIEWPORTPROC, Viewport)
 

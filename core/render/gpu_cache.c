@@ -8,8 +8,8 @@
 /* Frames an unused mesh or texture is kept: an undo or a toggled eye brings it back at no cost. */
 #define KEPT_FRAMES 8
 
-void gpu_cache_init(struct gpu_cache *cache, const struct gl *gl, GLuint instance_index_buffer) {
-    *cache = (struct gpu_cache){.gl = gl, .instance_index_buffer = instance_index_buffer};
+void gpu_cache_init(struct gpu_cache *cache, const struct gl *gl, GLuint instance_buffer) {
+    *cache = (struct gpu_cache){.gl = gl, .instance_buffer = instance_buffer};
 }
 
 void gpu_cache_begin_frame(struct gpu_cache *cache) {
@@ -80,10 +80,13 @@ static void mesh_upload(struct gpu_cache *cache, const pnb_mesh *from, struct gp
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->index_buffer);
     gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(from->index_count * sizeof(uint32_t)), from->indices,
                    GL_STATIC_DRAW);
-    gl->BindBuffer(GL_ARRAY_BUFFER, cache->instance_index_buffer);
-    gl->EnableVertexAttribArray(3);
-    gl->VertexAttribIPointer(3, 1, GL_UNSIGNED_INT, 0, NULL);
-    gl->VertexAttribDivisor(3, 1);
+    gl->BindBuffer(GL_ARRAY_BUFFER, cache->instance_buffer);
+    for (GLuint i = 0; i < 4; i++) {
+        gl->EnableVertexAttribArray(3 + i);
+        gl->VertexAttribPointer(3 + i, i < 3 ? 4 : 1, GL_FLOAT, GL_FALSE, sizeof(struct instance_block),
+                                (const void *)(uintptr_t)(4 * sizeof(float) * i));
+        gl->VertexAttribDivisor(3 + i, 1);
+    }
     gl->BindVertexArray(0);
 }
 

@@ -6,6 +6,14 @@
 #include "../gl/gl.h"
 #include "../scene/scene.h"
 
+/* One drawn instance, as common_instance.glsl reads it. Attributes and not a storage buffer, which a software renderer
+ * reads component by component. */
+struct instance_block {
+    float rows[3][4]; /* object to relative world */
+    float receives;   /* 1 or 0 */
+    float padding[3];
+};
+
 struct gpu_mesh {
     struct content_key key;
     uint64_t serial;          /* order of creation */
@@ -25,14 +33,14 @@ struct gpu_image {
 
 struct gpu_cache {
     const struct gl *gl;
-    GLuint instance_index_buffer; /* attribute 3 of every vertex array; see common_instance.glsl */
+    GLuint instance_buffer;       /* attributes 3 to 6 of every vertex array: instance_block */
     struct gpu_mesh **meshes;     /* open addressing by key; NULL: free */
     struct gpu_image **images;
     uint32_t mesh_capacity, image_capacity, mesh_count, image_count;
     uint64_t frame, serial, bytes;
 };
 
-void gpu_cache_init(struct gpu_cache *cache, const struct gl *gl, GLuint instance_index_buffer);
+void gpu_cache_init(struct gpu_cache *cache, const struct gl *gl, GLuint instance_buffer);
 void gpu_cache_free(struct gpu_cache *cache);
 /* What is looked up from now on belongs to a new frame. */
 void gpu_cache_begin_frame(struct gpu_cache *cache);

@@ -9,12 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* As common_instance.glsl reads it. */
-struct instance_block {
-    vec4 rows[3];
-    vec4 receives;
-};
-
 /* A range of a mesh with one material, for one instance; sorted so that equal draws become one call. */
 struct draw {
     const struct gpu_mesh *mesh;
@@ -31,13 +25,14 @@ struct gpu_material {
 struct gpu_scene {
     const struct gl *gl;
     struct gpu_cache cache;
-    GLuint instance_buffer, index_buffer; /* instance_block per instance; instance number per drawn instance */
+    GLuint instance_buffer;   /* instance_block of each drawn instance, in draw order */
     uint32_t instance_count, draw_count, material_count;
+    struct instance_block *instances;
     struct box *bounds;   /* per instance, relative world */
     uint32_t *flags;      /* per instance */
     struct draw *draws;
     struct gpu_material *materials;
-    uint32_t *visible;    /* scratch of gpu_scene_draw: instance numbers in draw order */
+    struct instance_block *visible; /* scratch of gpu_scene_draw: what goes to instance_buffer */
 };
 
 pnb_result gpu_scene_create(const struct gl *gl, struct gpu_scene **out) {
@@ -46,20 +41,21 @@ pnb_result gpu_scene_create(const struct gl *gl, struct gpu_scene **out) {
         return PNB_ERROR_OUT_OF_MEMORY;
     scene->gl = gl;
     gl->GenBuffers(1, &scene->instance_buffer);
-    gl->GenBuffers(1, &scene->index_buffer);
-    gpu_cache_init(&scene->cache, gl, scene->index_buffer);
+    gpu_cache_init(&scene->cache, gl, scene->instance_buffer);
     *out = scene;
     return PNB_OK;
 }
 
 static void free_frame_data(struct gpu_scene *scene) {
+    memory_free(scene->instances);
     memory_free(scene->bounds);
     memory_free(scene->flags);
     memory_free(scene->draws);
     memory_free(scene->materials);
     memory_free(scene->visible);
+    scene->instances = scene->visible = NULL;
     scene->bounds = NULL;
-    scene->flags = scene->visible = NULL;
+    scene->flags = NULL;
     scene->draws = NULL;
     scene->materials = NULL;
     scene->instance_count = scene->draw_count = scene->material_count = 0;
@@ -72,13 +68,12 @@ void gpu_scene_destroy(struct gpu_scene **out) {
     free_frame_data(scene);
     gpu_cache_free(&scene->cache);
     scene->gl->DeleteBuffers(1, &scene->instance_buffer);
-    scene->gl->DeleteBuffers(1, &scene->index_buffer);
     memory_free(scene);
     *out = NULL;
 }
 
 uint64_t gpu_scene_bytes(const struct gpu_scene *scene) {
-    return scene->cache.bytes + scene->instance_count * sizeof(struct instance_block);
+    return scene->cache.bytes + scene->draw_count * sizeof(struct instance_block);
 }
 
 /* ---- Materials ---- */
@@ -141,31 +136,25 @@ static bool box_is_empty(const struct box *box) {
 static pnb_result load_instances(struct gpu_scene *scene, struct frame *frame) {
     const struct scene *from = frame->scene;
     const uint32_t count = from->instance_count;
-    struct instance_block *blocks = memory_array(count, sizeof *blocks);
+    scene->instances = memory_array(count, sizeof *scene->instances);
     scene->bounds = memory_array(count, sizeof *scene->bounds);
     scene->flags = memory_array(count, sizeof *scene->flags);
     frame->casters = memory_array(count, sizeof *frame->casters);
-    if (!blocks || !scene->bounds || !scene->flags || !frame->casters) {
-        memory_free(blocks);
+    if (!scene->instances || !scene->bounds || !scene->flags || !frame->casters)
         return PNB_ERROR_OUT_OF_MEMORY;
-    }
     scene->instance_count = count;
     for (uint32_t i = 0; i < count; i++) {
         const struct scene_instance *instance = &from->instances[i];
-        relative_rows(instance->matrix, frame->origin, blocks[i].rows);
-        blocks[i].receives[0] = instance->flags & PNB_INSTANCE_NO_RECEIVE ? 0.5f : 1.0f;
+        struct instance_block *block = &scene->instances[i];
+        relative_rows(instance->matrix, frame->origin, block->rows);
+        block->receives = instance->flags & PNB_INSTANCE_NO_RECEIVE ? 0.0f : 1.0f;
         scene->flags[i] = instance->flags;
-        scene->bounds[i] = instance->mesh->index_count ? transform_box(instance->mesh->bounds, blocks[i].rows)
+        scene->bounds[i] = instance->mesh->index_count ? transform_box(instance->mesh->bounds, block->rows)
                                                        : (struct box){{FLT_MAX, 0, 0}, {-FLT_MAX, 0, 0}};
         if (!(instance->flags & PNB_INSTANCE_NO_SHADOW) && !box_is_empty(&scene->bounds[i]))
             frame->casters[frame->caster_count++] = scene->bounds[i];
     }
-    const struct gl *gl = scene->gl;
-    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, scene->instance_buffer);
-    gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)((count ? count : 1) * sizeof *blocks), count ? blocks : NULL,
-                   GL_STREAM_DRAW);
-    memory_free(blocks);
-    return gl_check(gl, "instances");
+    return PNB_OK;
 }
 
 /* ---- Draws ---- */
@@ -270,11 +259,10 @@ pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hid
     uint32_t count = 0;
     for (uint32_t i = 0; i < scene->draw_count; i++)
         if (!culled[scene->draws[i].instance])
-            scene->visible[count++] = scene->draws[i].instance;
-    gl->BindBuffer(GL_ARRAY_BUFFER, scene->index_buffer);
-    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((count ? count : 1) * sizeof(uint32_t)), count ? scene->visible : NULL,
-                   GL_STREAM_DRAW);
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, scene->instance_buffer);
+            scene->visible[count++] = scene->instances[scene->draws[i].instance];
+    gl->BindBuffer(GL_ARRAY_BUFFER, scene->instance_buffer);
+    gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((count ? count : 1) * sizeof *scene->visible),
+                   count ? scene->visible : NULL, GL_STREAM_DRAW);
     GLuint current = 0;
     for (uint32_t i = 0, base = 0; i < scene->draw_count;) {
         const struct draw *draw = &scene->draws[i];

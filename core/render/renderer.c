@@ -135,7 +135,9 @@ static pnb_result draw_light(struct frame *frame, uint32_t index) {
     pnb_result result = report(frame, index);
     if (result != PNB_OK)
         return result;
-    result = gl_texture_ensure(frame->gl, &renderer->visibility, GL_RGBA32F, frame->width, frame->height, 0, 1);
+    /* A technique that adds up many samples needs single precision; one that writes its result does not. */
+    const GLenum format = frame->settings->technique->draw ? GL_RGBA32F : GL_RGBA16F;
+    result = gl_texture_ensure(frame->gl, &renderer->visibility, format, frame->width, frame->height, 0, 1);
     if (result != PNB_OK)
         return result;
     light_block_upload(renderer, &light->emitter, &light->views);

@@ -4,6 +4,7 @@
 #include "options.h"
 
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -17,6 +18,8 @@ const char replay_help[] =
     "      --samples N             anti-aliasing samples per pixel\n"
     "      --map-size N            shadow map texels per side\n"
     "      --light-samples N       REFERENCE uses N x N samples of each light\n"
+    "      --unshadowed            no light casts shadows\n"
+    "      --clay                  every surface is white and opaque\n"
     "      --backend NAME          egl, egl:N, surfaceless or osmesa\n"
     "  -v, --verbose               show the library's log\n"
     "  -h, --help                  show this text\n";
@@ -38,6 +41,10 @@ bool replay_option(struct replay_options *options, int option, const char *argum
         return parse_count("--light-samples", argument, 1, 64, &options->light_samples);
     case 'C':
         return parse_crop("--crop", argument, options->crop);
+    case 'U':
+        return options->unshadowed = true;
+    case 'Y':
+        return options->clay = true;
     case 'B':
         options->backend = argument;
         return true;
@@ -71,6 +78,30 @@ static void change_size(struct replay *replay, const uint32_t size[2]) {
     memset(settings->crop, 0, sizeof settings->crop); /* the capture's was for its own size */
 }
 
+/* The scene is the capture's: what changes is copied. */
+static bool change_scene(struct replay *replay, const struct replay_options *options) {
+    pnb_scene *scene = &replay->scene;
+    if (options->unshadowed && scene->light_count) {
+        replay->lights = calloc(scene->light_count, sizeof *replay->lights);
+        if (!replay->lights)
+            return tool_error("out of memory");
+        memcpy(replay->lights, scene->lights, scene->light_count * sizeof *replay->lights);
+        for (uint32_t i = 0; i < scene->light_count; i++)
+            replay->lights[i].flags |= PNB_LIGHT_NO_SHADOW;
+        scene->lights = replay->lights;
+    }
+    if (options->clay) {
+        replay->slots = calloc(scene->slot_count + 1, sizeof *replay->slots);
+        if (!replay->slots)
+            return tool_error("out of memory");
+        replay->clay = (pnb_material){.struct_size = sizeof replay->clay, .base_color = {1, 1, 1}};
+        scene->materials = &replay->clay;
+        scene->material_count = 1;
+        scene->slots = replay->slots;
+    }
+    return true;
+}
+
 static bool apply_options(struct replay *replay, const struct replay_options *options) {
     pnb_settings *settings = &replay->settings;
     if (options->size[0] && (options->size[0] != settings->width || options->size[1] != settings->height))
@@ -81,6 +112,8 @@ static bool apply_options(struct replay *replay, const struct replay_options *op
         settings->shadow_map_size = options->shadow_map_size;
     if (options->light_samples)
         settings->light_samples = options->light_samples;
+    if (!change_scene(replay, options))
+        return false;
     const uint32_t *crop = options->crop;
     if (!crop[2])
         return true;
@@ -127,6 +160,8 @@ int replay_start(struct replay *replay, const struct replay_options *options) {
 
 void replay_close(struct replay *replay) {
     pnb_context_destroy(&replay->context);
+    free(replay->lights);
+    free(replay->slots);
     pnb_capture_destroy(&replay->capture);
 }
 

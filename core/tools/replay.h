@@ -18,6 +18,7 @@ struct replay_options {
     uint32_t size[2], crop[4];
     uint32_t samples, shadow_map_size, light_samples;
     const char *backend;
+    bool unshadowed, clay;
     bool verbose;
 };
 
@@ -26,6 +27,7 @@ struct replay_options {
     {"parameter", required_argument, NULL, 'p'}, {"size", required_argument, NULL, 's'},                               \
         {"samples", required_argument, NULL, 'S'}, {"map-size", required_argument, NULL, 'M'},                         \
         {"light-samples", required_argument, NULL, 'L'}, {"crop", required_argument, NULL, 'C'},                       \
+        {"unshadowed", no_argument, NULL, 'U'}, {"clay", no_argument, NULL, 'Y'},                                      \
         {"backend", required_argument, NULL, 'B'}, {"verbose", no_argument, NULL, 'v'}, {                              \
         "help", no_argument, NULL, 'h'                                                                                 \
     }
@@ -40,6 +42,9 @@ struct replay {
     pnb_capture *capture;
     pnb_context *context;
     pnb_scene scene;
+    pnb_light *lights;  /* of the scene, when changed; owned */
+    pnb_material clay;  /* the scene's only material, when changed */
+    uint32_t *slots;    /* owned */
     pnb_settings settings;
     uint32_t technique; /* index of the capture's technique */
     double context_ms;  /* time to open the context */
