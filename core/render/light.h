@@ -32,6 +32,7 @@ struct emitter {
     float blend;           /* SPOT: scene_light.spot_blend */
     vec2 cone_scale;       /* SPOT: X and Y axes of its matrix over Z */
     bool cosine_spot;      /* PNB_LIGHT_COSINE_SPOT */
+    float cone_offset;     /* SPOT: how far from `position` the tip of the cone may lie */
 };
 
 void emitter_init(struct emitter *emitter, const struct scene_light *light, const vec3 origin);

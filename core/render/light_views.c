@@ -87,10 +87,30 @@ static struct range box_range(const struct box *box, const struct light_view *vi
     return range_is_empty(&range) ? empty_range : range;
 }
 
-static struct range boxes_range(const struct box *boxes, size_t count, const struct light_view *view, float limit) {
+/* Whether a spot's cone is narrow enough for one view. */
+static bool is_narrow_spot(const struct emitter *emitter) {
+    return emitter->type == PNB_LIGHT_SPOT && emitter->cos_cone > 0.37f &&
+           fmaxf(emitter->cone_scale[0], emitter->cone_scale[1]) < 1.01f;
+}
+
+/* Where in a view of this limit a box of receivers can be lit. Those of a cube face lie within 45 degrees; its map
+ * reaches further, for their kernels. Those of a spot lie in its cone, whose tip may lie beside the view's centre. */
+static float receiver_limit(const struct emitter *emitter, float limit, float near_depth) {
+    if (limit == FACE_LIMIT)
+        return 1.0f;
+    if (!is_narrow_spot(emitter))
+        return limit;
+    const float tangent = sqrtf(1.0f - emitter->cos_cone * emitter->cos_cone) / emitter->cos_cone;
+    return 1.01f * tangent + (1.0f + tangent) * emitter->cone_offset / fmaxf(near_depth, 1e-6f);
+}
+
+static struct range receivers_range(const struct emitter *emitter, const struct box *boxes, size_t count,
+                                    const struct light_view *view, float limit) {
     struct range sum = empty_range;
     for (size_t i = 0; i < count; i++) {
-        const struct range range = box_range(&boxes[i], view, limit);
+        struct range range = box_range(&boxes[i], view, limit);
+        const float lit = receiver_limit(emitter, limit, range.near_depth);
+        range_clip(&range, (vec2){-lit, -lit}, (vec2){lit, lit});
         if (!range_is_empty(&range))
             range_union(&sum, &range);
     }
@@ -130,9 +150,7 @@ static struct range needed_range(const struct emitter *emitter, const struct lig
 /* Sets the view's rectangle and depth range; false if no caster can shadow a receiver in it. */
 static bool view_fit(struct light_view *view, const struct emitter *emitter, const struct box *receivers,
                      size_t receiver_count, const struct box *casters, size_t caster_count, int map_size, float limit) {
-    /* Receivers of a cube face lie within 45 degrees; its map reaches further, for their kernels. */
-    const float receiver_limit = limit == FACE_LIMIT ? 1.0f : limit;
-    const struct range seen = boxes_range(receivers, receiver_count, view, receiver_limit);
+    const struct range seen = receivers_range(emitter, receivers, receiver_count, view, limit);
     if (range_is_empty(&seen))
         return false;
     const struct range needed = needed_range(emitter, view, &seen, casters, caster_count, limit);
@@ -175,25 +193,13 @@ static bool one_view_suffices(const struct emitter *emitter, const struct box *r
         return true;
     if (emitter->type == PNB_LIGHT_POINT)
         return false;
-    if (emitter->type == PNB_LIGHT_SPOT && emitter->cos_cone > 0.37f &&
-        fmaxf(emitter->cone_scale[0], emitter->cone_scale[1]) < 1.01f)
+    if (is_narrow_spot(emitter))
         return true;
     struct light_view front;
     view_init(&front, emitter, 0);
-    const struct range range = boxes_range(receivers, count, &front, 2.0f * SINGLE_VIEW_LIMIT);
+    const struct range range = receivers_range(emitter, receivers, count, &front, 2.0f * SINGLE_VIEW_LIMIT);
     return range_is_empty(&range) || (range.minimum[0] > -SINGLE_VIEW_LIMIT && range.minimum[1] > -SINGLE_VIEW_LIMIT &&
                                       range.maximum[0] < SINGLE_VIEW_LIMIT && range.maximum[1] < SINGLE_VIEW_LIMIT);
-}
-
-/* A spot lights only its cone, so its view needs no more than that. */
-static float single_view_limit(const struct emitter *emitter) {
-    if (emitter->type == PNB_LIGHT_SUN)
-        return FLT_MAX;
-    if (emitter->type == PNB_LIGHT_SPOT && emitter->cos_cone > 0.37f) {
-        const float tangent = sqrtf(1.0f - emitter->cos_cone * emitter->cos_cone) / emitter->cos_cone;
-        return fminf(SINGLE_VIEW_LIMIT, 1.01f * tangent * fmaxf(1.0f, fmaxf(emitter->cone_scale[0], emitter->cone_scale[1])));
-    }
-    return SINGLE_VIEW_LIMIT;
 }
 
 void light_views_fit(struct light_views *views, const struct emitter *emitter, const struct box *receivers,
@@ -207,27 +213,23 @@ void light_views_fit(struct light_views *views, const struct emitter *emitter, c
         struct light_view *view = &views->views[views->count];
         view_init(view, emitter, face);
         if (view_fit(view, emitter, receivers, receiver_count, casters, caster_count, map_size,
-                     views->single ? single_view_limit(emitter) : FACE_LIMIT))
+                     !views->single ? FACE_LIMIT : emitter->type == PNB_LIGHT_SUN ? FLT_MAX : SINGLE_VIEW_LIMIT))
             views->layer_of_face[face] = views->count++;
     }
 }
 
 void light_view_projection(const struct light_view *view, mat4 projection) {
     const float n = view->near_depth, f = view->far_depth;
-    const float left = view->rect[0], right = left + 1.0f / view->rect[2];
-    const float bottom = view->rect[1], top = bottom + 1.0f / view->rect[3];
     glm_mat4_zero(projection);
-    projection[0][0] = 2.0f / (right - left);
-    projection[1][1] = 2.0f / (top - bottom);
+    for (int i = 0; i < 2; i++) { /* 2 uv - 1 */
+        projection[i][i] = 2.0f * view->rect[i + 2];
+        projection[view->perspective != 0.0f ? 2 : 3][i] = -2.0f * view->rect[i] * view->rect[i + 2] - 1.0f;
+    }
     if (view->perspective != 0.0f) {
-        projection[2][0] = -(right + left) / (right - left);
-        projection[2][1] = -(top + bottom) / (top - bottom);
         projection[2][2] = (f + n) / (f - n);
         projection[2][3] = 1.0f;
         projection[3][2] = -2.0f * f * n / (f - n);
     } else {
-        projection[3][0] = -(right + left) / (right - left);
-        projection[3][1] = -(top + bottom) / (top - bottom);
         projection[2][2] = 2.0f / (f - n);
         projection[3][2] = -(f + n) / (f - n);
         projection[3][3] = 1.0f;
