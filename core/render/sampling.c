@@ -21,15 +21,23 @@ static float wrap(float x) {
     return x - floorf(x);
 }
 
+/* Two opposite arms of Vogel's spiral (a bijugate pattern): consecutive points are opposite, so that the centroid of
+ * any pairs of them is exactly 0 and edges do not move. An odd last point is the centre. */
+static void disk_point(int i, int count, float turn, float point[2]) {
+    const int pair = i / 2, pairs = count / 2;
+    const float radius = pair < pairs ? sqrtf(((float)pair + 0.5f) / (float)pairs) : 0.0f;
+    const float angle = (float)pair * 0.5f * GOLDEN_ANGLE + turn * PI * 0.61803399f;
+    const float side = i % 2 == 0 ? 1.0f : -1.0f;
+    point[0] = side * radius * cosf(angle);
+    point[1] = side * radius * sinf(angle);
+}
+
 /* A disk: Vogel's spiral. A square: the lattice of the two-dimensional golden ratio (Roberts 2018), whose projections
  * on both axes are even, so that straight edges get as many steps as there are points. */
 static void vogel_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
     const float t = (float)turn;
     if (disk) {
-        const float radius = sqrtf(((float)i + 0.5f) / (float)count);
-        const float angle = (float)i * GOLDEN_ANGLE + t * 2.0f * PI * 0.61803399f;
-        point[0] = radius * cosf(angle);
-        point[1] = radius * sinf(angle);
+        disk_point(i, count, t, point);
         return;
     }
     const float n = (float)count;
@@ -65,6 +73,15 @@ void cell_point(int i, int j, int n, bool disk, float point[2]) {
     point[1] = 2.0f * ((float)j + ((float)i + 0.5f) / side) / side - 1.0f;
     if (disk)
         square_to_disk(point);
+}
+
+void sphere_point(int i, int count, float point[3]) {
+    const float z = 1.0f - (2.0f * (float)i + 1.0f) / (float)count, across = sqrtf(1.0f - z * z);
+    /* In double: with thousands of points the angle is large. */
+    const float angle = (float)fmod((double)i * 2.399963229728653, 2.0 * 3.141592653589793);
+    point[0] = across * cosf(angle);
+    point[1] = across * sinf(angle);
+    point[2] = z;
 }
 
 /* Blackman-Harris window over [-0.5, 0.5]. */

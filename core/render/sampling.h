@@ -26,6 +26,10 @@ int pattern_fill(enum pattern pattern, int count, bool disk, uint32_t turn, floa
  * along the axes get n * n steps (Kensler 2013, correlated multi-jitter without the jitter). */
 void cell_point(int i, int j, int n, bool disk, float point[2]);
 
+/* Point i of `count` points of the unit sphere, evenly dense: Vogel's spiral on a sphere (a Fibonacci lattice). Any
+ * hemisphere has its centroid where it should be, which cannot be said of a grid. */
+void sphere_point(int i, int count, float point[3]);
+
 /* Area-preserving map of [-1, 1]^2 to the unit disk (Shirley and Chiu 1997). */
 void square_to_disk(float point[2]);
 

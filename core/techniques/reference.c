@@ -43,12 +43,12 @@ static void emitter_at(const struct emitter *emitter, int i, int j, int n, struc
         glm_vec3_cross(frame[2], frame[0], frame[1]);
         point->tan_half_angle = 0.0f;
     } else if (emitter->radius > 0.0f) {
-        /* A sphere, evenly covered (Lambert's cylindrical projection); each receiver counts the side it sees. */
-        cell_point(i, j, n, false, s);
-        const float across = sqrtf(fmaxf(1.0f - s[0] * s[0], 0.0f)), angle = (float)M_PI * s[1];
-        const vec3 direction = {across * cosf(angle), across * sinf(angle), s[0]};
+        /* A sphere; each receiver counts the side it sees. */
+        vec3 direction;
+        sphere_point(j * n + i, n * n, direction);
         glm_vec3_muladds((float *)direction, emitter->radius, point->position);
         point->radius = 0.0f;
+        point->cone_offset = emitter->radius;
         glm_vec4((float *)direction, 1.0f, normal);
     }
 }
