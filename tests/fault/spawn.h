@@ -18,13 +18,6 @@ struct spawn {
     rlim_t stack;                               /* bytes of every thread's stack by default; 0: as it is */
 };
 
-static inline void limit(int resource, rlim_t value) {
-    if (value) {
-        struct rlimit both = {value, value};
-        setrlimit(resource, &both);
-    }
-}
-
 static inline void become(const struct spawn *spawn, int output) {
     for (int i = 0; i < SPAWN_MAX_VARIABLES && spawn->variables[i]; ++i) {
         putenv((char *)spawn->variables[i]);
@@ -32,8 +25,12 @@ static inline void become(const struct spawn *spawn, int output) {
     dup2(output, STDOUT_FILENO);
     dup2(output, STDERR_FILENO);
     alarm(300); /* a hang is a failure */
-    limit(RLIMIT_AS, spawn->address_space);
-    limit(RLIMIT_STACK, spawn->stack);
+    if (spawn->address_space) {
+        setrlimit(RLIMIT_AS, &(struct rlimit){spawn->address_space, spawn->address_space});
+    }
+    if (spawn->stack) {
+        setrlimit(RLIMIT_STACK, &(struct rlimit){spawn->stack, spawn->stack});
+    }
     execl("/proc/self/exe", "test", spawn->argument, (char *)NULL);
     _exit(127);
 }
