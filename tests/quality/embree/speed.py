@@ -70,7 +70,7 @@ def print_table(techniques, traced):
     print(f"{'':12} {'ms':>9} {'RMSE':>8} {'traced':>8}   ray tracer at the same RMSE")
     for name, row in techniques.items():
         equal = time_at(row['rmse'], traced.values())
-        text = f"{equal:9.1f} ms: {equal / row['ms']:.2f} times the time" if equal else '        - (outside the rays measured)'
+        text = f"{equal:9.1f} ms: {equal / row['ms']:.2f} times the time" if equal else 'outside the rays measured'
         print(f"{name:12} {row['ms']:9.1f} {row['rmse']:8.4f} {row['traced']:8.4f}  {text}")
     for rays, row in traced.items():
         print(f"{f'{rays} rays':12} {row['ms']:9.1f} {row['rmse']:8.4f}")
