@@ -24,25 +24,25 @@ static float wrap(float x) {
 /* Two opposite arms of Vogel's spiral (a bijugate pattern): consecutive points are opposite, so that the centroid of
  * any pairs of them is exactly 0 and edges do not move. An odd last point is the centre. */
 static void disk_point(int i, int count, float turn, float point[2]) {
-    const int pair = i / 2, pairs = count / 2;
-    const float radius = pair < pairs ? sqrtf(((float)pair + 0.5f) / (float)pairs) : 0.0f;
+    const int pair = i / 2, odd = count % 2;
+    const float radius = odd && i == count - 1 ? 0.0f : sqrtf((float)(2 * pair + 1 + odd) / (float)count);
     const float angle = (float)pair * 0.5f * GOLDEN_ANGLE + turn * PI * 0.61803399f;
     const float side = i % 2 == 0 ? 1.0f : -1.0f;
     point[0] = side * radius * cosf(angle);
     point[1] = side * radius * sinf(angle);
 }
 
-/* A disk: Vogel's spiral. A square: the lattice of the two-dimensional golden ratio (Roberts 2018), whose projections
- * on both axes are even, so that straight edges get as many steps as there are points. */
+/* A disk: Vogel's spiral. A square: the golden-ratio lattice, whose projections on both axes are even, so that straight
+ * edges get as many steps as there are points; it is symmetric about the centre. */
 static void vogel_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
     const float t = (float)turn;
     if (disk) {
         disk_point(i, count, t, point);
         return;
     }
-    const float n = (float)count;
-    point[0] = 2.0f * wrap(((float)i + 0.5f + 0.61803399f * t) / n) - 1.0f;
-    point[1] = 2.0f * wrap(((float)i + 0.5f) * 0.61803399f + 0.7548777f * t) - 1.0f;
+    const float n = (float)count, from_middle = (float)i + 0.5f - 0.5f * n;
+    point[0] = 2.0f * wrap((from_middle + 0.61803399f * t) / n + 0.5f) - 1.0f;
+    point[1] = 2.0f * wrap(from_middle * 0.61803399f + 0.7548777f * t + 0.5f) - 1.0f;
 }
 
 static void grid_point(int i, int side, bool disk, float point[2]) {
