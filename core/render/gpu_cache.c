@@ -100,7 +100,6 @@ static pnb_result mesh_create(struct gpu_cache *cache, const pnb_mesh *from, str
     }
     memcpy(ranges, from->ranges, from->range_count * sizeof *ranges);
     *mesh = (struct gpu_mesh){.key = from->content,
-                              .serial = cache->serial++,
                               .bytes = from->vertex_count * sizeof(struct vertex) + from->index_count * sizeof(uint32_t),
                               .ranges = ranges,
                               .range_count = from->range_count};

@@ -16,7 +16,6 @@ struct instance_block {
 
 struct gpu_mesh {
     struct content_key key;
-    uint64_t serial;          /* order of creation */
     uint64_t last_frame;
     uint64_t bytes;
     GLuint vertex_array, vertex_buffer, index_buffer;
@@ -37,7 +36,7 @@ struct gpu_cache {
     struct gpu_mesh **meshes;     /* open addressing by key; NULL: free */
     struct gpu_image **images;
     uint32_t mesh_capacity, image_capacity, mesh_count, image_count;
-    uint64_t frame, serial, bytes;
+    uint64_t frame, bytes;
 };
 
 void gpu_cache_init(struct gpu_cache *cache, const struct gl *gl, GLuint instance_buffer);
