@@ -29,15 +29,15 @@ vec3 octahedral_decode(vec2 e) {
     return normalize(n);
 }
 
-// Full-image pixel coordinate of a fragment of the crop.
+// Full-image coordinate of a fragment of a pass over the crop.
 vec2 camera_pixel(vec2 fragment) {
     return fragment + camera.image.zw;
 }
 
-// From gbuffer_depth to relative world space.
-vec3 camera_position(vec2 fragment, float depth) {
+// Relative world position of a full-image coordinate and its gbuffer_depth.
+vec3 camera_position(vec2 coordinate, float depth) {
     depth = abs(depth);
-    vec2 p = camera.window.xy + camera_pixel(fragment) / camera.image.xy * camera.window.zw;
+    vec2 p = camera.window.xy + coordinate / camera.image.xy * camera.window.zw;
     vec3 across = p.x * camera.axis_x.xyz + p.y * camera.axis_y.xyz;
     return camera.perspective != 0.0 ? depth * (across - camera.axis_z.xyz) : across - depth * camera.axis_z.xyz;
 }

@@ -22,7 +22,7 @@ void main() {
     vec4 color = material_color(uv);
 #ifdef TRANSPARENT
     // Stochastic transparency, stratified over the samples of the pixel; a single sample cuts at one half.
-    float jitter = camera.sample_count > 1.0 ? pixel_random(uvec2(camera_pixel(gl_FragCoord.xy))) : 0.5;
+    float jitter = camera.sample_count > 1.0 ? pixel_random(uvec2(gl_FragCoord.xy)) : 0.5;
     if (color.a < fract(jitter + camera.sample_index * 0.61803399) + 1e-6)
         discard;
 #endif

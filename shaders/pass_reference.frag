@@ -21,13 +21,14 @@ float sample_weight(vec3 position, vec3 normal) {
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec2 coordinate = camera_pixel(gl_FragCoord.xy);
+    ivec2 pixel = ivec2(coordinate); // in the G-buffer
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
     out_visibility = vec4(0.0);
     if (depth == 0.0)
         return;
     vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
-    vec3 position = camera_position(gl_FragCoord.xy, depth);
+    vec3 position = camera_position(coordinate, depth);
     float weight = sample_weight(position, octahedral_decode(normals.xy));
     if (weight <= 0.0)
         return;

@@ -5,6 +5,8 @@
 layout(local_size_x = 16, local_size_y = 4) in;
 uniform sampler2D source, divisor; // divisor: SHADOW only
 uniform ivec2 band;                // first row and number of rows
+uniform ivec2 corner;              // of the crop in the source
+uniform int width;                 // of the crop
 uniform float sample_weight;       // 1 / samples
 layout(std430, binding = 1) writeonly buffer pixel_block {
     float pixels[];
@@ -12,11 +14,10 @@ layout(std430, binding = 1) writeonly buffer pixel_block {
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    int width = textureSize(source, 0).x;
     if (pixel.x >= width || pixel.y >= band.y)
         return;
     int index = pixel.y * width + pixel.x;
-    vec4 sum = texelFetch(source, ivec2(pixel.x, pixel.y + band.x), 0);
+    vec4 sum = texelFetch(source, corner + ivec2(pixel.x, pixel.y + band.x), 0);
 #if defined(COMBINED)
     sum *= sample_weight;
     pixels[4 * index] = sum.r;

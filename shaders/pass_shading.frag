@@ -18,17 +18,18 @@ layout(location = 3) out vec4 out_normal;
 layout(location = 4) out vec4 out_visibility; // of this light
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec2 coordinate = camera_pixel(gl_FragCoord.xy);
+    ivec2 pixel = ivec2(coordinate); // in the G-buffer
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
     vec3 color = texelFetch(gbuffer_color, pixel, 0).rgb;
     vec3 normal = octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).xy);
     bool covered = depth != 0.0;
     vec3 radiance = vec3(0.0), irradiance = vec3(0.0), visible = vec3(1.0);
 #ifdef LIGHT_TYPE
-    vec4 v = texelFetch(visibility, pixel, 0);
+    vec4 v = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0);
     if (covered && v.a > 0.0) {
         visible = v.rgb / v.a;
-        irradiance = light.emission.rgb * light_irradiance(camera_position(gl_FragCoord.xy, depth), normal);
+        irradiance = light.emission.rgb * light_irradiance(camera_position(coordinate, depth), normal);
         radiance = color / PI * irradiance * visible;
     }
 #endif

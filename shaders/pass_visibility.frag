@@ -11,13 +11,14 @@ uniform sampler2D gbuffer_depth, gbuffer_normal;
 layout(location = 0) out vec4 out_visibility;
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec2 coordinate = camera_pixel(gl_FragCoord.xy);
+    ivec2 pixel = ivec2(coordinate); // in the G-buffer
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
     out_visibility = vec4(0.0);
     if (depth == 0.0)
         return;
     vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
-    vec3 position = camera_position(gl_FragCoord.xy, depth);
+    vec3 position = camera_position(coordinate, depth);
     if (!light_reaches(position, octahedral_decode(normals.xy)))
         return;
     out_visibility = vec4(1.0);

@@ -47,7 +47,8 @@ static pnb_result gather(struct frame *frame, const struct box *tiles, int colum
 pnb_result pass_bounds(struct frame *frame) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const int columns = (frame->width + TILE - 1) / TILE, rows = (frame->height + TILE - 1) / TILE;
+    const int columns = (renderer->gbuffer_depth.width + TILE - 1) / TILE;
+    const int rows = (renderer->gbuffer_depth.height + TILE - 1) / TILE;
     const size_t count = (size_t)columns * (size_t)rows;
     struct box *tiles = memory_array(count, sizeof *tiles);
     if (!tiles)

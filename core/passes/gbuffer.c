@@ -25,16 +25,18 @@ static pnb_result ensure_gbuffer(struct renderer *renderer, int width, int heigh
     return PNB_OK;
 }
 
-/* The projection of the full image, seen through the crop: pixels must not depend on it. */
-static void crop_viewport(const struct gl *gl, const struct settings *settings) {
-    gl->Viewport(-(GLint)settings->crop[0], -(GLint)settings->crop[1], (GLsizei)settings->width,
-                 (GLsizei)settings->height);
+/* The G-buffer is that of the full image, whatever the crop, so that pixels do not depend on it to the last bit; only
+ * the crop of it is drawn when no more is needed. */
+static void scissor_crop(const struct gl *gl, const struct settings *settings) {
+    const GLint *crop = (const GLint *)settings->crop;
+    gl->Enable(GL_SCISSOR_TEST);
+    gl->Scissor(crop[0], crop[1], crop[2], crop[3]);
 }
 
-pnb_result pass_gbuffer(struct frame *frame) {
+pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    pnb_result result = ensure_gbuffer(renderer, frame->width, frame->height);
+    pnb_result result = ensure_gbuffer(renderer, (int)frame->settings->width, (int)frame->settings->height);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "G-buffer")) != PNB_OK)
         return result;
     upload_camera(renderer, &frame->camera);
@@ -44,7 +46,8 @@ pnb_result pass_gbuffer(struct frame *frame) {
         .depth = &renderer->gbuffer_z};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
-    crop_viewport(gl, frame->settings);
+    if (!whole)
+        scissor_crop(gl, frame->settings);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthMask(GL_TRUE);
     gl->Disable(GL_BLEND);
@@ -69,6 +72,7 @@ pnb_result pass_gbuffer(struct frame *frame) {
     if (result == PNB_OK)
         result = gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA,
                                 &(struct draw_programs){programs[0], programs[1], false});
+    gl->Disable(GL_SCISSOR_TEST);
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +
                                     gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_z));
     return result;

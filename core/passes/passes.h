@@ -31,7 +31,7 @@ struct renderer {
     GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer, box_buffer, pixel_buffer;
     struct program_cache programs;
 
-    /* G-buffer, W x H: see common_camera.glsl for the contents. */
+    /* G-buffer, of the full image's size: see common_camera.glsl for the contents. */
     struct gl_texture gbuffer_depth, gbuffer_normal, gbuffer_color, gbuffer_z;
     struct gl_texture visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
     /* Sums over the samples, RGBA32F, W x H. */
@@ -39,8 +39,8 @@ struct renderer {
     struct gl_texture light_shadows[MAX_LIGHTS];
 };
 
-/* gbuffer.c: scene -> gbuffer_* of the frame's sample. */
-pnb_result pass_gbuffer(struct frame *frame);
+/* gbuffer.c: scene -> gbuffer_* of the frame's sample; whole: all of the full image, else only the crop. */
+pnb_result pass_gbuffer(struct frame *frame, bool whole);
 /* bounds.c: gbuffer_depth -> frame->receivers, boxes in relative world space, read back. */
 pnb_result pass_bounds(struct frame *frame);
 /* shadow_map.c: casters -> map, DEPTH_COMPONENT32F, S x S x a layer per view, linear light-space depth 0..1. */

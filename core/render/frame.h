@@ -39,7 +39,6 @@ struct frame {
     struct camera_block camera;
     int width, height;         /* of the crop */
     uint32_t sample;           /* anti-aliasing sample being drawn */
-    bool gbuffer_is_first_sample; /* find_receivers has drawn it already */
 
     struct box *receivers;     /* what the camera sees, by tiles; see bounds.c */
     size_t receiver_count;

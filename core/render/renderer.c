@@ -64,25 +64,11 @@ void draw_screen(struct renderer *renderer) {
 
 /* ---- One frame ---- */
 
-/* The first sample's G-buffer of the whole image: light views must not depend on the crop. */
+/* The whole first sample, crop or not: light views must not depend on the crop. */
 static pnb_result find_receivers(struct frame *frame) {
-    const struct settings *settings = frame->settings;
-    struct settings full = *settings;
-    full.crop[0] = full.crop[1] = 0;
-    full.crop[2] = full.width;
-    full.crop[3] = full.height;
-    frame->settings = &full;
-    frame->width = (int)full.width;
-    frame->height = (int)full.height;
-    camera_block_init(&frame->camera, &frame->scene->camera, &full, 0);
-    pnb_result result = pass_gbuffer(frame);
-    if (result == PNB_OK)
-        result = pass_bounds(frame);
-    frame->settings = settings;
-    frame->width = (int)settings->crop[2];
-    frame->height = (int)settings->crop[3];
-    frame->gbuffer_is_first_sample = settings->crop[2] == settings->width && settings->crop[3] == settings->height;
-    return result;
+    camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, 0);
+    pnb_result result = pass_gbuffer(frame, true);
+    return result == PNB_OK ? pass_bounds(frame) : result;
 }
 
 static void fit_lights(struct frame *frame) {
@@ -156,8 +142,8 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
     pnb_result result = PNB_OK;
     for (frame->sample = 0; frame->sample < frame->settings->samples && result == PNB_OK; frame->sample++) {
         camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
-        if (!(first == 0 && frame->sample == 0 && frame->gbuffer_is_first_sample))
-            result = pass_gbuffer(frame);
+        if (first > 0 || frame->sample > 0) /* find_receivers has drawn the first */
+            result = pass_gbuffer(frame, false);
         if (result == PNB_OK && frame->scene->light_count == 0)
             result = pass_shading(frame, NULL, true);
         if (result == PNB_OK && first == 0 && frame->sample == 0)
@@ -202,6 +188,8 @@ pnb_result renderer_run(struct renderer *renderer, struct pnb_job *job) {
     frame->job = job;
     frame->scene = job->scene;
     frame->settings = &job->settings;
+    frame->width = (int)job->settings.crop[2];
+    frame->height = (int)job->settings.crop[3];
     glm_vec3_copy((float *)&job->scene->camera.matrix[12], frame->origin);
     pnb_result result = draw_frame(frame);
     for (uint32_t i = 0; i < MAX_LIGHTS; i++)
