@@ -98,7 +98,7 @@ static double emitter_point(const pnb_light *light, const double position[3], co
 struct oracle oracle_light(const pnb_light *light, const double position[3], const double normal[3], int n,
                            oracle_blocker blocker, const void *user) {
     const bool disk = light->type != PNB_LIGHT_AREA || light->shape == PNB_AREA_ELLIPSE;
-    struct oracle sum = {0};
+    struct oracle sum = {.lowest = 1};
     for (int i = 0; i < n * n; i++) {
         double s[2] = {(2 * (i % n) + 1.0) / n - 1, (2 * (i / n) + 1.0) / n - 1}, point[3], to_point[3];
         if (disk)
@@ -108,7 +108,7 @@ struct oracle oracle_light(const pnb_light *light, const double position[3], con
             to_point[k] = point[k] - position[k];
         normalize(to_point);
         const double height = dot(to_point, normal);
-        sum.below_horizon |= height <= 0;
+        sum.lowest = fmin(sum.lowest, height);
         irradiance *= fmax(height, 0) / (n * n);
         const bool visible = !blocker || !blocker(position, point, user);
         sum.irradiance += irradiance;

@@ -14,7 +14,7 @@ struct oracle {
     double irradiance;  /* W/m2 of the first channel, were nothing in between */
     double visibility;  /* share of that irradiance that arrives: what the Shadow pass holds */
     double visible;     /* share of the emitter's points that are visible: what PCSS estimates */
-    bool below_horizon; /* a part of the emitter lies behind the surface */
+    double lowest;      /* sine of the elevation of its lowest point above the surface */
 };
 
 /* Splits the emitter into n x n cells. blocker NULL: nothing is in between. */
