@@ -61,7 +61,7 @@ void receiver_set_bias(inout receiver r, float kernel_radius) {
     float scale = r.texel_size * (perspective ? r.position.z : 1.0);
     float facing = abs(perspective ? dot(r.normal, normalize(r.position)) : r.normal.z);
     float rounding = r.depth_span + abs(r.position.z);
-    r.plane = dot(r.normal, r.position) + scale * (0.15 / max(facing, 0.1) + 5e-4 * kernel_radius) + 2e-6 * rounding;
+    r.plane = dot(r.normal, r.position) + scale * (0.15 / max(facing, 0.5) + 5e-4 * kernel_radius) + 2e-6 * rounding;
     r.limit = r.position.z - 1e-6 * rounding;
 }
 
