@@ -5,6 +5,8 @@
 
 uniform int p_search_reduction;
 uniform int p_min_max;
+uniform int p_blocker_average;
+const int AREA_AVERAGE = 0;
 
 // Scale of the search: the kernel of the nearest blocker there can be. Each step looks up the nearest depth inside the
 // last rectangle, which can only shrink it (Guennebaud et al. 2006, section 4.2), and never loses a blocker.
@@ -18,11 +20,16 @@ float search_scale(receiver r) {
 }
 
 // Counts a texel that hides some point of the emitter: its offset must lie within the kernel of its own depth. Without
-// this the search averages texels no ray to the light passes, such as a rising floor beside the receiver.
+// this the search averages texels no ray to the light passes, such as a rising floor beside the receiver. A texel of
+// the map covers the smaller a share of the emitter the wider the kernel of its depth; that share is its weight, so that
+// a twig near the light does not outweigh the bowl that hides the light.
 void search_tap(receiver r, vec2 offset, vec2 reach, inout vec2 sum) {
     float depth;
-    if (blocker_at(r, r.center + offset, depth) && all(lessThanEqual(abs(offset), reach * kernel_scale(r, depth) + 1.0)))
-        sum += vec2(depth, 1.0);
+    if (!blocker_at(r, r.center + offset, depth))
+        return;
+    vec2 kernel = reach * kernel_scale(r, depth) + 1.0;
+    if (all(lessThanEqual(abs(offset), kernel)))
+        sum += vec2(depth, 1.0) / (p_blocker_average == AREA_AVERAGE ? kernel.x * kernel.y : 1.0);
 }
 
 float filter_tap(receiver r, vec2 offset) {

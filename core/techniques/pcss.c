@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "technique.h"
 
-enum { PATTERN, BLOCKER_SAMPLES, FILTER_SAMPLES, SEARCH_REDUCTION, MIN_MAX };
+enum { PATTERN, BLOCKER_SAMPLES, FILTER_SAMPLES, BLOCKER_AVERAGE, SEARCH_REDUCTION, MIN_MAX };
 
 static const char *const patterns[] = {"VOGEL", "GRID", NULL};
+
+static const char *const averages[] = {"AREA", "EQUAL", NULL};
 
 static const struct parameter parameters[] = {
     [PATTERN] = {.name = "pattern",
@@ -31,6 +33,14 @@ static const struct parameter parameters[] = {
                         .minimum = 1,
                         .maximum = MAX_TAPS,
                         .default_value = 64},
+    [BLOCKER_AVERAGE] = {.name = "blocker_average",
+                         .label = "Blocker Average",
+                         .description = "AREA: a blocker counts by the share of the light it hides. EQUAL: all count the "
+                                        "same, as in the paper; thin casters near the light then widen every penumbra",
+                         .unit = "",
+                         .type = PNB_ENUM,
+                         .maximum = 1,
+                         .items = averages},
     [SEARCH_REDUCTION] = {.name = "search_reduction",
                           .label = "Search Reduction",
                           .description = "Times the search area is shrunk to what the nearest blocker in it needs; 0: "
