@@ -282,6 +282,21 @@ static void bad_lights(void) {
     ROW(PNB_OK, "", LAMPS(light->flags = PNB_LIGHT_COSINE_SPOT));
 }
 
+/* Sums and products of the largest numbers there may be. */
+static void bright_scenes(void) {
+    for (int near = 0; near < 2; ++near) {
+        ROW(PNB_OK, "", FILL(room.materials[0].base_color, 1e18f); FILL(room.scene.world_color, 1e18f);
+            LAMPS(FILL(light->emission, 1e18f); light->matrix[14] = near ? 0.901f : 2); room.settings.samples = 3);
+        ROW(
+            PNB_OK, "another light", FILL(room.pixels, 1e18f); FILL(room.materials[1].base_color, 1e18f);
+            room.scene.light_count = 64; for (int i = 0; i < 64; ++i) {
+                FILL(room.lights[i].emission, 1e18f);
+                room.lights[i].radius = 0;
+                room.lights[i].matrix[14] = near ? 0.901f : 2;
+            });
+    }
+}
+
 /* Where lights can stand. */
 static void misplaced_lights(void) {
     ROW(PNB_OK, "", LAMPS(light->matrix[14] = 0.5f)); /* inside the box */
@@ -516,9 +531,9 @@ static const struct {
 } groups[] = {
 #define GROUP(rows)                                                                                                    \
     { #rows, rows }
-    GROUP(bad_handles),  GROUP(bad_meshes),       GROUP(bad_instances),  GROUP(bad_materials),
-    GROUP(bad_lights),   GROUP(misplaced_lights), GROUP(bad_cameras),    GROUP(far_scenes),
-    GROUP(bad_settings), GROUP(bad_crops),        GROUP(bad_parameters), GROUP(parameter_ranges),
+    GROUP(bad_handles),   GROUP(bad_meshes),       GROUP(bad_instances),    GROUP(bad_materials), GROUP(bad_lights),
+    GROUP(bright_scenes), GROUP(misplaced_lights), GROUP(bad_cameras),      GROUP(far_scenes),    GROUP(bad_settings),
+    GROUP(bad_crops),     GROUP(bad_parameters),   GROUP(parameter_ranges),
 };
 
 /* A context of its own for each group shows which one leaks. */
