@@ -156,9 +156,10 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
 
 static pnb_result draw_frame(struct frame *frame) {
     pnb_result result;
-    if ((result = gpu_scene_update(frame->renderer->scene, frame)) != PNB_OK ||
-        (result = find_receivers(frame)) != PNB_OK || (result = pass_prepare_sums(frame)) != PNB_OK ||
-        (result = pass_create_images(frame)) != PNB_OK)
+    /* Memory first: an image that is too large must not be drawn for a minute before it fails. */
+    if ((result = pass_create_images(frame)) != PNB_OK || (result = pass_prepare_sums(frame)) != PNB_OK ||
+        (result = gpu_scene_update(frame->renderer->scene, frame)) != PNB_OK ||
+        (result = find_receivers(frame)) != PNB_OK)
         return result;
     fit_lights(frame);
     const uint32_t count = frame->scene->light_count;
