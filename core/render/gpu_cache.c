@@ -8,55 +8,90 @@
 /* Frames an unused mesh or texture is kept: an undo or a toggled eye brings it back at no cost. */
 #define KEPT_FRAMES 8
 
-void gpu_cache_init(struct gpu_cache *cache, const struct gl *gl, GLuint instance_buffer) {
-    *cache = (struct gpu_cache){.gl = gl, .instance_buffer = instance_buffer};
-}
-
-void gpu_cache_begin_frame(struct gpu_cache *cache) {
-    cache->frame++;
-}
-
 static bool keys_equal(const struct content_key *a, const struct content_key *b) {
     return a->words[0] == b->words[0] && a->words[1] == b->words[1];
 }
 
-/* Every entry begins with its key, so that both tables share the probing. */
-static uint32_t probe(void *const *table, uint32_t capacity, const struct content_key *key) {
-    uint32_t i = (uint32_t)key->words[0] & (capacity - 1);
-    while (table[i] && !keys_equal(table[i], key))
-        i = (i + 1) & (capacity - 1);
-    return i;
+/* Where the entry of this key is, or would be. */
+static struct gpu_entry **table_slot(const struct gpu_table *table, const struct content_key *key) {
+    uint32_t i = (uint32_t)key->words[0] & (table->capacity - 1);
+    while (table->entries[i] && !keys_equal(&table->entries[i]->key, key))
+        i = (i + 1) & (table->capacity - 1);
+    return &table->entries[i];
 }
 
-/* Keeps a table at most half full. */
-static pnb_result table_reserve(void ***table, uint32_t *capacity, uint32_t count) {
-    if (2 * (count + 1) <= *capacity)
-        return PNB_OK;
-    const uint32_t grown = *capacity ? 2 * *capacity : 64;
-    void **entries = memory_array(grown, sizeof *entries);
-    if (!entries)
+/* Moves the entries of the last few frames to a table of this capacity and releases the others. */
+static pnb_result table_rebuild(struct gpu_cache *cache, struct gpu_table *table, uint32_t capacity, uint64_t oldest) {
+    struct gpu_table rebuilt = {.capacity = capacity, .release = table->release};
+    rebuilt.entries = memory_array(capacity, sizeof(struct gpu_entry *));
+    if (!rebuilt.entries)
         return PNB_ERROR_OUT_OF_MEMORY;
-    for (uint32_t i = 0; i < *capacity; i++)
-        if ((*table)[i])
-            entries[probe(entries, grown, (*table)[i])] = (*table)[i];
-    memory_free(*table);
-    *table = entries;
-    *capacity = grown;
+    for (uint32_t i = 0; i < table->capacity; i++) {
+        struct gpu_entry *entry = table->entries[i];
+        if (!entry)
+            continue;
+        if (entry->last_frame >= oldest) {
+            *table_slot(&rebuilt, &entry->key) = entry;
+            rebuilt.count++;
+        } else {
+            cache->bytes -= entry->bytes;
+            table->release(cache, entry);
+        }
+    }
+    memory_free(table->entries);
+    *table = rebuilt;
     return PNB_OK;
 }
 
-static void mesh_free(struct gpu_cache *cache, struct gpu_mesh *mesh) {
+/* The slot of a key, with room for one more entry: the table is at most half full. */
+static pnb_result table_find(struct gpu_cache *cache, struct gpu_table *table, const struct content_key *key,
+                             struct gpu_entry ***slot) {
+    if (2 * (table->count + 1) > table->capacity) {
+        pnb_result result = table_rebuild(cache, table, table->capacity ? 2 * table->capacity : 64, 0);
+        if (result != PNB_OK)
+            return result;
+    }
+    *slot = table_slot(table, key);
+    if (**slot)
+        (**slot)->last_frame = cache->frame;
+    return PNB_OK;
+}
+
+static void table_add(struct gpu_cache *cache, struct gpu_table *table, struct gpu_entry **slot,
+                      struct gpu_entry *entry) {
+    entry->last_frame = cache->frame;
+    cache->bytes += entry->bytes;
+    table->count++;
+    *slot = entry;
+}
+
+static void table_evict(struct gpu_cache *cache, struct gpu_table *table) {
+    const uint64_t oldest = cache->frame > KEPT_FRAMES ? cache->frame - KEPT_FRAMES : 0;
+    for (uint32_t i = 0; i < table->capacity; i++)
+        if (table->entries[i] && table->entries[i]->last_frame < oldest) {
+            /* Without memory for it the next frame tries again. */
+            table_rebuild(cache, table, table->capacity, oldest);
+            return;
+        }
+}
+
+static void table_free(struct gpu_cache *cache, struct gpu_table *table) {
+    for (uint32_t i = 0; i < table->capacity; i++)
+        if (table->entries[i])
+            table->release(cache, table->entries[i]);
+    memory_free(table->entries);
+}
+
+/* ---- Meshes ---- */
+
+static void mesh_release(struct gpu_cache *cache, struct gpu_entry *entry) {
+    struct gpu_mesh *mesh = (struct gpu_mesh *)entry;
     const struct gl *gl = cache->gl;
     gl->DeleteVertexArrays(1, &mesh->vertex_array);
     gl->DeleteBuffers(1, &mesh->vertex_buffer);
     gl->DeleteBuffers(1, &mesh->index_buffer);
     memory_free(mesh->ranges);
     memory_free(mesh);
-}
-
-static void image_free(struct gpu_cache *cache, struct gpu_image *image) {
-    cache->gl->DeleteTextures(1, &image->texture);
-    memory_free(image);
 }
 
 static void attribute(const struct gl *gl, GLuint index, GLint size, GLenum type, GLboolean normalized, size_t offset) {
@@ -99,8 +134,8 @@ static pnb_result mesh_create(struct gpu_cache *cache, const pnb_mesh *from, str
         return PNB_ERROR_OUT_OF_MEMORY;
     }
     memcpy(ranges, from->ranges, from->range_count * sizeof *ranges);
-    *mesh = (struct gpu_mesh){.key = from->content,
-                              .bytes = from->vertex_count * sizeof(struct vertex) + from->index_count * sizeof(uint32_t),
+    const uint64_t bytes = from->vertex_count * sizeof(struct vertex) + from->index_count * sizeof(uint32_t);
+    *mesh = (struct gpu_mesh){.entry = {.key = from->content, .bytes = bytes},
                               .ranges = ranges,
                               .range_count = from->range_count};
     mesh_upload(cache, from, mesh);
@@ -109,26 +144,28 @@ static pnb_result mesh_create(struct gpu_cache *cache, const pnb_mesh *from, str
         *out = mesh;
         return PNB_OK;
     }
-    mesh_free(cache, mesh);
+    mesh_release(cache, &mesh->entry);
     return result == PNB_ERROR_OUT_OF_MEMORY ? error_set(result, "out of OpenGL memory for mesh '%s'", from->name) : result;
 }
 
 pnb_result gpu_cache_mesh(struct gpu_cache *cache, const pnb_mesh *mesh, const struct gpu_mesh **out) {
-    pnb_result result = table_reserve((void ***)&cache->meshes, &cache->mesh_capacity, cache->mesh_count);
-    if (result != PNB_OK)
-        return result;
-    struct gpu_mesh **slot = &cache->meshes[probe((void *const *)cache->meshes, cache->mesh_capacity, &mesh->content)];
-    if (!*slot) {
+    struct gpu_entry **slot;
+    pnb_result result = table_find(cache, &cache->meshes, &mesh->content, &slot);
+    if (result == PNB_OK && !*slot) {
         struct gpu_mesh *created = NULL;
-        if ((result = mesh_create(cache, mesh, &created)) != PNB_OK)
-            return result;
-        *slot = created;
-        cache->mesh_count++;
-        cache->bytes += created->bytes;
+        if ((result = mesh_create(cache, mesh, &created)) == PNB_OK)
+            table_add(cache, &cache->meshes, slot, &created->entry);
     }
-    (*slot)->last_frame = cache->frame;
-    *out = *slot;
-    return PNB_OK;
+    if (result == PNB_OK)
+        *out = (const struct gpu_mesh *)*slot;
+    return result;
+}
+
+/* ---- Images ---- */
+
+static void image_release(struct gpu_cache *cache, struct gpu_entry *entry) {
+    cache->gl->DeleteTextures(1, &((struct gpu_image *)entry)->texture);
+    memory_free(entry);
 }
 
 static pnb_result image_create(struct gpu_cache *cache, const pnb_texture *from, struct gpu_image **out) {
@@ -136,8 +173,8 @@ static pnb_result image_create(struct gpu_cache *cache, const pnb_texture *from,
     struct gpu_image *image = memory_array(1, sizeof *image);
     if (!image)
         return PNB_ERROR_OUT_OF_MEMORY;
-    image->key = from->content;
-    image->bytes = (uint64_t)from->width * from->height * 8 * 4 / 3;
+    image->entry.key = from->content;
+    image->entry.bytes = (uint64_t)from->width * from->height * 8 * 4 / 3; /* with mip maps */
     GLsizei levels = 1;
     for (uint32_t side = from->width > from->height ? from->width : from->height; side > 1; side /= 2)
         levels++;
@@ -153,96 +190,44 @@ static pnb_result image_create(struct gpu_cache *cache, const pnb_texture *from,
         *out = image;
         return PNB_OK;
     }
-    image_free(cache, image);
+    image_release(cache, &image->entry);
     return result == PNB_ERROR_OUT_OF_MEMORY ? error_set(result, "out of OpenGL memory for texture '%s'", from->name)
                                              : result;
 }
 
 pnb_result gpu_cache_image(struct gpu_cache *cache, const pnb_texture *texture, const struct gpu_image **out) {
-    pnb_result result = table_reserve((void ***)&cache->images, &cache->image_capacity, cache->image_count);
-    if (result != PNB_OK)
-        return result;
-    struct gpu_image **slot =
-        &cache->images[probe((void *const *)cache->images, cache->image_capacity, &texture->content)];
-    if (!*slot) {
+    struct gpu_entry **slot;
+    pnb_result result = table_find(cache, &cache->images, &texture->content, &slot);
+    if (result == PNB_OK && !*slot) {
         struct gpu_image *created = NULL;
-        if ((result = image_create(cache, texture, &created)) != PNB_OK)
-            return result;
-        *slot = created;
-        cache->image_count++;
-        cache->bytes += created->bytes;
+        if ((result = image_create(cache, texture, &created)) == PNB_OK)
+            table_add(cache, &cache->images, slot, &created->entry);
     }
-    (*slot)->last_frame = cache->frame;
-    *out = *slot;
-    return PNB_OK;
+    if (result == PNB_OK)
+        *out = (const struct gpu_image *)*slot;
+    return result;
 }
 
-/* Open addressing cannot just clear a slot: the entries that stay are put back into the emptied table. */
-static void table_rebuild(void **table, uint32_t capacity, void **kept, uint32_t count) {
-    memset(table, 0, capacity * sizeof *table);
-    for (uint32_t i = 0; i < count; i++)
-        table[probe(table, capacity, kept[i])] = kept[i];
+/* ---- Cache ---- */
+
+void gpu_cache_init(struct gpu_cache *cache, const struct gl *gl, GLuint instance_buffer) {
+    *cache = (struct gpu_cache){.gl = gl,
+                                .instance_buffer = instance_buffer,
+                                .meshes = {.release = mesh_release},
+                                .images = {.release = image_release}};
 }
 
-static bool is_stale(const struct gpu_cache *cache, uint64_t last_frame) {
-    return last_frame + KEPT_FRAMES < cache->frame;
-}
-
-static void evict_meshes(struct gpu_cache *cache) {
-    uint32_t stale = 0, count = 0;
-    for (uint32_t i = 0; i < cache->mesh_capacity; i++)
-        stale += cache->meshes[i] && is_stale(cache, cache->meshes[i]->last_frame);
-    void **kept = stale ? memory_array(cache->mesh_count, sizeof *kept) : NULL;
-    if (!kept)
-        return;
-    for (uint32_t i = 0; i < cache->mesh_capacity; i++) {
-        struct gpu_mesh *mesh = cache->meshes[i];
-        if (mesh && is_stale(cache, mesh->last_frame)) {
-            cache->bytes -= mesh->bytes;
-            mesh_free(cache, mesh);
-        } else if (mesh) {
-            kept[count++] = mesh;
-        }
-    }
-    cache->mesh_count = count;
-    table_rebuild((void **)cache->meshes, cache->mesh_capacity, kept, count);
-    memory_free(kept);
-}
-
-static void evict_images(struct gpu_cache *cache) {
-    uint32_t stale = 0, count = 0;
-    for (uint32_t i = 0; i < cache->image_capacity; i++)
-        stale += cache->images[i] && is_stale(cache, cache->images[i]->last_frame);
-    void **kept = stale ? memory_array(cache->image_count, sizeof *kept) : NULL;
-    if (!kept)
-        return;
-    for (uint32_t i = 0; i < cache->image_capacity; i++) {
-        struct gpu_image *image = cache->images[i];
-        if (image && is_stale(cache, image->last_frame)) {
-            cache->bytes -= image->bytes;
-            image_free(cache, image);
-        } else if (image) {
-            kept[count++] = image;
-        }
-    }
-    cache->image_count = count;
-    table_rebuild((void **)cache->images, cache->image_capacity, kept, count);
-    memory_free(kept);
+void gpu_cache_begin_frame(struct gpu_cache *cache) {
+    cache->frame++;
 }
 
 void gpu_cache_evict(struct gpu_cache *cache) {
-    evict_meshes(cache);
-    evict_images(cache);
+    table_evict(cache, &cache->meshes);
+    table_evict(cache, &cache->images);
 }
 
 void gpu_cache_free(struct gpu_cache *cache) {
-    for (uint32_t i = 0; i < cache->mesh_capacity; i++)
-        if (cache->meshes[i])
-            mesh_free(cache, cache->meshes[i]);
-    for (uint32_t i = 0; i < cache->image_capacity; i++)
-        if (cache->images[i])
-            image_free(cache, cache->images[i]);
-    memory_free(cache->meshes);
-    memory_free(cache->images);
+    table_free(cache, &cache->meshes);
+    table_free(cache, &cache->images);
     *cache = (struct gpu_cache){0};
 }

@@ -14,28 +14,38 @@ struct instance_block {
     float padding[3];
 };
 
-struct gpu_mesh {
+/* What every cached object begins with. */
+struct gpu_entry {
     struct content_key key;
     uint64_t last_frame;
     uint64_t bytes;
+};
+
+struct gpu_mesh {
+    struct gpu_entry entry;
     GLuint vertex_array, vertex_buffer, index_buffer;
     struct mesh_range *ranges;
     uint32_t range_count;
 };
 
 struct gpu_image {
-    struct content_key key;
-    uint64_t last_frame;
-    uint64_t bytes;
+    struct gpu_entry entry;
     GLuint texture;
+};
+
+struct gpu_cache;
+
+/* Entries of one kind, by key, with open addressing; NULL: free. */
+struct gpu_table {
+    struct gpu_entry **entries;
+    uint32_t capacity, count;
+    void (*release)(struct gpu_cache *cache, struct gpu_entry *entry);
 };
 
 struct gpu_cache {
     const struct gl *gl;
     GLuint instance_buffer;       /* attributes 3 to 6 of every vertex array: instance_block */
-    struct gpu_mesh **meshes;     /* open addressing by key; NULL: free */
-    struct gpu_image **images;
-    uint32_t mesh_capacity, image_capacity, mesh_count, image_count;
+    struct gpu_table meshes, images;
     uint64_t frame, bytes;
 };
 

@@ -172,7 +172,7 @@ static int compare_pointers(const void *a, const void *b) {
 static int compare_draws(const void *first, const void *second) {
     const struct draw *a = first, *b = second;
     if (a->mesh != b->mesh) /* by content: where depths are equal the first drawn wins, whatever was uploaded before */
-        return memcmp(&a->mesh->key, &b->mesh->key, sizeof a->mesh->key);
+        return memcmp(&a->mesh->entry.key, &b->mesh->entry.key, sizeof a->mesh->entry.key);
     if (a->range != b->range)
         return compare_pointers(a->range, b->range);
     if (a->material != b->material)
