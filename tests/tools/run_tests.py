@@ -7,12 +7,13 @@ import tempfile
 import traceback
 
 import test_compare
+import test_damage
 import test_render
 import tool
 
 
 def collect(wanted):
-    tests = [(f'{module.__name__}.{name}', function) for module in (test_render, test_compare)
+    tests = [(f'{module.__name__}.{name}', function) for module in (test_render, test_damage, test_compare)
              for name, function in vars(module).items() if name.startswith('test_')]
     return [(name, function) for name, function in tests if not wanted or any(part in name for part in wanted)]
 
