@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * Bad input through the public API. Every row spoils a good scene, renders it with every technique and demands finite
- * images with a message that names the object, or the error it should be; the same through a capture; then a good scene
- * still gives the image it always gave; and nothing leaks. */
+ * Bad input through the public API. Every row spoils a good scene, renders it and demands finite images with a message
+ * that names the object, or the error it should be; the same through a capture; then a good scene still gives the image
+ * it always gave; and nothing leaks. */
 #include "room.h"
 
 #include <float.h>
@@ -92,12 +92,22 @@ static bool check_capture(uint64_t hash) {
     return same;
 }
 
+/* What a scene's numbers do to a technique's arithmetic is tried with every technique, where that does not take long;
+ * the rest with one technique after the other. */
+static bool try_every_technique;
+
 static void run_row(const struct expectation *expected) {
+    static uint32_t row_count;
     uint64_t hash = 0, after = 0;
+    const uint32_t count = expected->result == PNB_OK && !room.settings.technique ? pnb_technique_count() : 0;
     bool good_row = CHECK_RESULT(room_make(&room), PNB_OK);
-    for (uint32_t i = 0; good_row && !room.settings.technique && i < pnb_technique_count(); ++i) {
+    row_count++;
+    for (uint32_t i = 0; good_row && i < count; ++i) {
         pnb_technique_info info = PNB_INIT(pnb_technique_info);
         pnb_settings settings = room.settings;
+        if (!try_every_technique && i != row_count % count) {
+            continue;
+        }
         pnb_technique_get_info(i, &info);
         settings.technique = info.id;
         if (!check_render(expected, &room.scene, &settings, &hash)) {
@@ -418,9 +428,9 @@ static void bad_settings(void) {
     ROW(PNB_OK, "", settings->shadow_map_size = 1023; room.scene.light_count = 1);
     ROW(PNB_ERROR_UNSUPPORTED, "shadow_map_size", settings->shadow_map_size = most + 1);
     ROW(INVALID, "light_samples", settings->light_samples = 65);
-    ROW(PNB_OK, "", settings->light_samples = 1);
-    ROW(PNB_OK, "", settings->light_samples = 64; settings->width = settings->height = 2; room.scene.light_count = 1;
-        settings->shadow_map_size = 16);
+    ROW(PNB_OK, "", settings->technique = "REFERENCE"; settings->light_samples = 1);
+    ROW(PNB_OK, "", settings->technique = "REFERENCE"; settings->light_samples = 64;
+        settings->width = settings->height = 2; room.scene.light_count = 1; settings->shadow_map_size = 16);
     ROW(INVALID, "passes", settings->passes = 32);
     ROW(INVALID, "flags", settings->flags = 2);
     ROW(PNB_OK, "", settings->flags = PNB_SETTINGS_FILM_TRANSPARENT);
@@ -525,29 +535,33 @@ static void bad_handles(void) {
 
 /* ---- All ----------------------------------------------------------------------------------------------------- */
 
-static const struct {
+static const struct group {
     const char *name;
     void (*run)(void);
+    bool every_technique;
 } groups[] = {
-#define GROUP(rows)                                                                                                    \
-    { #rows, rows }
-    GROUP(bad_handles),   GROUP(bad_meshes),       GROUP(bad_instances),    GROUP(bad_materials), GROUP(bad_lights),
-    GROUP(bright_scenes), GROUP(misplaced_lights), GROUP(bad_cameras),      GROUP(far_scenes),    GROUP(bad_settings),
-    GROUP(bad_crops),     GROUP(bad_parameters),   GROUP(parameter_ranges),
+#define GROUP(rows, every_technique)                                                                                   \
+    { #rows, rows, every_technique }
+    GROUP(bad_handles, false),      GROUP(bad_meshes, true),  GROUP(bad_instances, true),
+    GROUP(bad_materials, true),     GROUP(bad_lights, true),  GROUP(bright_scenes, true),
+    GROUP(misplaced_lights, true),  GROUP(bad_cameras, true), GROUP(far_scenes, true),
+    GROUP(bad_settings, false),     GROUP(bad_crops, false),  GROUP(bad_parameters, false),
+    GROUP(parameter_ranges, false),
 };
 
 /* A context of its own for each group shows which one leaks. */
-static void run_group(const char *name, void (*rows)(void)) {
+static void run_group(const struct group *group) {
     const int before = checks_passed + checks_failed;
     CHECK_RESULT(create_context(NULL, &context), PNB_OK);
     room_reset(&good);
     CHECK_RESULT(room_make(&good), PNB_OK);
     CHECK_RESULT(render_good(&good_hash), PNB_OK);
-    rows();
+    try_every_technique = group->every_technique && !UNDER_ADDRESS_SANITIZER;
+    group->run();
     room_free(&good);
     pnb_context_destroy(&context);
     CHECK_INT(memory_live_blocks(), 0);
-    printf("%s: %d checks\n", name, checks_passed + checks_failed - before);
+    printf("%s: %d checks\n", group->name, checks_passed + checks_failed - before);
     fflush(stdout);
 }
 
@@ -566,7 +580,7 @@ int main(int argc, char **argv) {
             wanted = wanted || strcmp(argv[j], groups[i].name) == 0;
         }
         if (wanted) {
-            run_group(groups[i].name, groups[i].run);
+            run_group(&groups[i]);
         }
     }
     unlink(capture_path);
