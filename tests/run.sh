@@ -61,7 +61,7 @@ run_programs() {
     local report=$1/tests.xml status=0
     rm -f "$report"
     # Indented: what a program counts is not what the suite counts.
-    ctest --test-dir "$1" --output-on-failure --no-tests=error --output-junit "$report" | sed 's/^/    /' || status=$?
+    ctest --test-dir "$1" --output-on-failure --no-tests=error --output-junit "$report" | sed -u 's/^/    /' || status=$?
     count() { sed -n "s/.*\b$1=\"\([0-9]*\)\".*/\1/p" "$report" | head -n 1; }
     local tests failures skipped
     tests=$(count tests) failures=$(count failures) skipped=$(count skipped)
