@@ -41,8 +41,8 @@ float filter_tap(receiver r, vec2 offset) {
 mat2 kernel_at(receiver r, float scale) {
     vec2 u = r.kernel[0], v = r.kernel[1];
     float u_length = length(u), v_length = length(v);
-    return mat2(u_length > 1e-6 ? u * max(scale, 0.5 / u_length) : vec2(0.5, 0.0),
-                v_length > 1e-6 ? v * max(scale, 0.5 / v_length) : vec2(0.0, 0.5));
+    return mat2(u_length > 1e-30 ? u * max(scale, 0.5 / u_length) : vec2(0.5, 0.0),
+                v_length > 1e-30 ? v * max(scale, 0.5 / v_length) : vec2(0.0, 0.5));
 }
 
 // Every stride-th pair of taps is enough for a kernel of few texels: two taps to a texel, and four to begin with.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What must not change an image: the order of objects, triangles and lights, what was rendered before, and the locale,
- * folder, home and umask of the host. */
+ * What must not change an image: the order of objects, triangles and lights, the unit of length, what was rendered
+ * before, and the locale, folder, home and umask of the host. */
 #include "fault/room.h"
 #include "fault/spawn.h"
 #include "test_scenes.h"
@@ -140,6 +140,62 @@ static void instances_have_no_order(pnb_context *context) {
     test_scene_destroy(&fence);
 }
 
+/* ---- Scale --------------------------------------------------------------------------------------------------- */
+
+static void scale_room(struct room *room, float scale) {
+    for (int i = 0; i < ROOM_MESHES; ++i) {
+        for (int j = 0; j < 15; ++j) {
+            room->instances[i].matrix[j] *= scale;
+        }
+    }
+    for (int i = 0; i < ROOM_LAMPS; ++i) {
+        pnb_light *light = &room->lights[i];
+        for (int j = 12; j < 15; ++j) {
+            light->matrix[j] *= scale;
+        }
+        light->size[0] *= scale;
+        light->size[1] *= scale;
+        light->radius *= scale;
+    }
+    for (int j = 12; j < 15; ++j) {
+        room->scene.camera.matrix[j] *= scale;
+    }
+    room->scene.camera.clip_start = 0.1f * scale;
+    room->scene.camera.clip_end = 100 * scale;
+}
+
+/* From millimetres to ten thousand kilometres, by powers of two, so that no rounding differs. */
+static void scale_does_not_count(pnb_context *context, const char *technique) {
+    static const int exponents[] = {0, -10, -5, 10, 20, 24};
+    pnb_job *expected = NULL;
+    for (size_t i = 0; i < sizeof exponents / sizeof *exponents; ++i) {
+        struct room room;
+        room_prepare(&room);
+        scale_room(&room, ldexpf(1, exponents[i]));
+        room.settings.technique = technique;
+        room.settings.passes = PNB_PASS_NORMAL | PNB_PASS_LIGHT_SHADOWS;
+        pnb_job *job = render_room(context, &room);
+        const size_t different = i == 0 ? 0 : count_different(expected, job, 0);
+        if (!CHECK_INT((long long)different, 0)) {
+            printf("with %s, scaled by 2^%d\n", technique, exponents[i]);
+        }
+        if (i == 0) {
+            expected = job;
+        } else {
+            pnb_job_destroy(&job);
+        }
+    }
+    pnb_job_destroy(&expected);
+}
+
+static void scales_do_not_count(pnb_context *context) {
+    for (uint32_t i = 0; i < pnb_technique_count(); ++i) {
+        pnb_technique_info info = PNB_INIT(pnb_technique_info);
+        pnb_technique_get_info(i, &info);
+        scale_does_not_count(context, info.id);
+    }
+}
+
 /* ---- History ------------------------------------------------------------------------------------------------- */
 
 /* A red and a green floor at one height: at every pixel depths are equal, so that the first drawn wins. */
@@ -244,6 +300,7 @@ int main(int argc, char **argv) {
     order_does_not_count(context);
     instances_have_no_order(context);
     history_does_not_count(context);
+    scales_do_not_count(context);
     pnb_context_destroy(&context);
     surroundings_do_not_count();
     CHECK_INT(memory_live_blocks(), 0);
