@@ -49,6 +49,9 @@ def set_up_eevee(scene, samples):
     for name, value in settings.items():
         if hasattr(scene.eevee, name):
             setattr(scene.eevee, name, value)
+    for light in bpy.data.lights:
+        if hasattr(light, "shadow_cascade_max_distance"):
+            light.shadow_cascade_max_distance = 25.0  # the scenes' extent, instead of 200 m
 
 
 def set_up_penumbra(scene, samples):

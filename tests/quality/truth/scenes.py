@@ -235,6 +235,7 @@ def build(function):
     for item in scene.objects:
         if item.type == "LIGHT":
             item.visible_camera = False
+    scene.camera.data.clip_end = 25.0  # EEVEE fits a sun's shadow map to it
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 480, 270, 100
     bpy.context.view_layer.update()
 
