@@ -24,7 +24,8 @@ static void column(const pnb_light *light, int index, double v[3]) {
 
 /* Two unit vectors across v, which is one itself. */
 static void across(const double v[3], double x[3], double y[3]) {
-    const int smallest = fabs(v[0]) < fabs(v[1]) ? (fabs(v[0]) < fabs(v[2]) ? 0 : 2) : (fabs(v[1]) < fabs(v[2]) ? 1 : 2);
+    const int smallest =
+        fabs(v[0]) < fabs(v[1]) ? (fabs(v[0]) < fabs(v[2]) ? 0 : 2) : (fabs(v[1]) < fabs(v[2]) ? 1 : 2);
     for (int i = 0; i < 3; i++)
         x[i] = (i == smallest) - v[smallest] * v[i];
     normalize(x);

@@ -11,10 +11,10 @@
 typedef bool (*oracle_blocker)(const double from[3], const double to[3], const void *user);
 
 struct oracle {
-    double irradiance;  /* W/m2 of the first channel, were nothing in between */
-    double visibility;  /* share of that irradiance that arrives: what the Shadow pass holds */
-    double visible;     /* share of the emitter's points that are visible: what PCSS estimates */
-    double lowest;      /* sine of the elevation of its lowest point above the surface */
+    double irradiance; /* W/m2 of the first channel, were nothing in between */
+    double visibility; /* share of that irradiance that arrives: what the Shadow pass holds */
+    double visible;    /* share of the emitter's points that are visible: what PCSS estimates */
+    double lowest;     /* sine of the elevation of its lowest point above the surface */
 };
 
 /* Splits the emitter into n x n cells. blocker NULL: nothing is in between. */

@@ -37,7 +37,8 @@ static inline pnb_settings quality_settings(const char *technique, uint32_t widt
 }
 
 /* The same, with the aspect of a procedural scene's image: `height` pixels high. */
-static inline pnb_settings quality_scene_settings(const char *technique, const struct test_scene *scene, uint32_t height) {
+static inline pnb_settings quality_scene_settings(const char *technique, const struct test_scene *scene,
+                                                  uint32_t height) {
     const pnb_settings *own = test_scene_settings(scene);
     return quality_settings(technique, own->width * height / own->height, height);
 }
@@ -114,7 +115,8 @@ static inline double render_rmse(const struct render *a, const struct render *b)
 }
 
 /* A test scene; its failure to build ends the program. parameter: NAN for the scene's default. */
-static inline struct test_scene *quality_scene(const char *name, enum test_light light, float light_size, float parameter) {
+static inline struct test_scene *quality_scene(const char *name, enum test_light light, float light_size,
+                                               float parameter) {
     const struct test_scene_options options = {.light = light,
                                                .light_size = light_size,
                                                .parameter = isnan(parameter) ? 0 : parameter,
@@ -133,11 +135,12 @@ static inline bool scene_has_own_lights(const char *name) {
 }
 
 /* World position of a pixel's surface, by the depth pass. */
-static inline void render_position(const struct render *render, const pnb_camera *camera, const pnb_settings *settings, uint32_t x,
-                     uint32_t y, double position[3]) {
+static inline void render_position(const struct render *render, const pnb_camera *camera, const pnb_settings *settings,
+                                   uint32_t x, uint32_t y, double position[3]) {
     const double depth = render->depth[(size_t)y * render->width + x];
     const double scale = camera->projection == PNB_PERSPECTIVE ? depth : 1;
-    const double u = (x + settings->crop[0] + 0.5) / settings->width, v = (y + settings->crop[1] + 0.5) / settings->height;
+    const double u = (x + settings->crop[0] + 0.5) / settings->width,
+                 v = (y + settings->crop[1] + 0.5) / settings->height;
     const float *w = camera->window, *m = camera->matrix;
     const double right = scale * (w[0] + u * ((double)w[1] - (double)w[0]));
     const double up = scale * (w[2] + v * ((double)w[3] - (double)w[2]));
@@ -147,7 +150,8 @@ static inline void render_position(const struct render *render, const pnb_camera
 
 /* Writes a grey image to the folder PENUMBRA_TEST_IMAGES, if that is set: to be looked at. pixels: every
  * `stride`-th float is a value, 0..1. */
-static inline void quality_show(const char *name, const float *pixels, uint32_t stride, uint32_t width, uint32_t height) {
+static inline void quality_show(const char *name, const float *pixels, uint32_t stride, uint32_t width,
+                                uint32_t height) {
     const char *folder = getenv("PENUMBRA_TEST_IMAGES");
     if (!folder)
         return;

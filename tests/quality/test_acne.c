@@ -84,9 +84,10 @@ static void wide_plane(void) {
         for (int i = 0; i < 8; i++)
             floor.matrix[i] *= 16;
         scene.instances = &floor;
-        const pnb_camera camera = {.struct_size = sizeof camera,
-                                   .matrix = {1, 0, 0, 0, 0, 0.2588f, 0.9659f, 0, 0, -0.9659f, 0.2588f, 0, 0, -8, 1.5f, 1},
-                                   .window = {-0.5f, 0.5f, -0.28f, 0.28f}};
+        const pnb_camera camera = {
+            .struct_size = sizeof camera,
+            .matrix = {1, 0, 0, 0, 0, 0.2588f, 0.9659f, 0, 0, -0.9659f, 0.2588f, 0, 0, -8, 1.5f, 1},
+            .window = {-0.5f, 0.5f, -0.28f, 0.28f}};
         scene.camera = camera;
         for (uint32_t t = 0; t < pnb_technique_count(); t++) {
             pnb_settings settings = technique_settings(NULL, 256, 144);
@@ -105,7 +106,8 @@ static void wide_plane(void) {
 static const struct ball sphere = {{0, 0, 1}, 1};
 
 /* Whether a pixel sees the whole light: the floor, if no point of the light is behind the sphere; the sphere, if all of
- * the light is above the plane of the pixel's facet. A facet's normal differs from the sphere's by up to 2.1 degrees. */
+ * the light is above the plane of the pixel's facet. A facet's normal differs from the sphere's by up to 2.1 degrees.
+ */
 static bool sees_whole_light(const pnb_light *light, const double position[3]) {
     double normal[3] = {0, 0, 1};
     if (position[2] < 2e-3)

@@ -56,8 +56,8 @@ static pnb_settings line_settings(const char *technique) {
 }
 
 /* Worst of the rows; slack: of the edge, in shares of the penumbra's width. */
-static void check_rows(const struct render *render, const double expected[LINE], const char *technique, const char *what,
-                       double slack) {
+static void check_rows(const struct render *render, const double expected[LINE], const char *technique,
+                       const char *what, double slack) {
     const struct edge truth = measure_edge(expected);
     double offset = 0, widening = 0, difference = 0;
     for (uint32_t row = 0; row < ROWS; row++) {
@@ -69,8 +69,8 @@ static void check_rows(const struct render *render, const double expected[LINE],
         for (int x = 0; x < LINE; x++)
             difference = fmax(difference, fabs(visibility[x] - expected[x]));
     }
-    printf("%-9s %-28s edge at %6.2f px, off by %.3f; width %6.2f px, off by %.2f %%; largest difference %.3f\n", technique,
-           what, truth.position, offset, truth.width, 100 * widening, difference);
+    printf("%-9s %-28s edge at %6.2f px, off by %.3f; width %6.2f px, off by %.2f %%; largest difference %.3f\n",
+           technique, what, truth.position, offset, truth.width, 100 * widening, difference);
     CHECK_AT_MOST(offset, 0.5 + slack * truth.width);
     CHECK_AT_MOST(widening, 0.03);
 }
@@ -82,7 +82,8 @@ static void half_plane(enum test_light light, float height, float light_x) {
     lamp.matrix[12] = light_x;
     if (light == TEST_LIGHT_SUN) { /* turned instead of moved */
         const float angle = atanf(light_x / 4);
-        const float matrix[16] = {cosf(angle), 0, -sinf(angle), 0, 0, 1, 0, 0, sinf(angle), 0, cosf(angle), 0, 0, 0, 4, 1};
+        const float matrix[16] = {cosf(angle), 0, -sinf(angle), 0, 0, 1, 0, 0,
+                                  sinf(angle), 0, cosf(angle),  0, 0, 0, 4, 1};
         memcpy(lamp.matrix, matrix, sizeof matrix);
     }
     scene.lights = &lamp;
@@ -98,7 +99,8 @@ static void half_plane(enum test_light light, float height, float light_x) {
         settings.technique = techniques[i];
         struct render render = quality_render(&scene, &settings);
         char what[64];
-        snprintf(what, sizeof what, "%s, %.1f m high, %+.1f m", test_light_names[light], (double)height, (double)light_x);
+        snprintf(what, sizeof what, "%s, %.1f m high, %+.1f m", test_light_names[light], (double)height,
+                 (double)light_x);
         /* Off the axis a disk that faces the surface is tilted against the map. PCSS projects it to first order, which
          * leaves out how much nearer one half of it is: 0.9 % of the width here, with a light 1.5 m wide 4 m away. */
         const bool tilted = i == 1 && light_x != 0 && (light == TEST_LIGHT_POINT || light == TEST_LIGHT_SPOT);

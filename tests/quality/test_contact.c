@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * A shadow starts where its caster stands: no light under a box on a floor, at 1280 x 720 with a map of 1024 texels, for
- * every technique and every kind of light. */
+ * A shadow starts where its caster stands: no light under a box on a floor, at 1280 x 720 with a map of 1024 texels,
+ * for every technique and every kind of light. */
 #include "oracle.h"
 #include "quality.h"
 
@@ -22,7 +22,8 @@ static void find_regions(const struct render *render, const pnb_scene *scene, co
             render_position(render, &scene->camera, settings, x, y, position);
             const bool floor = render_covers(render, y * WIDTH + x) && fabs(position[2]) < 1e-3;
             const double visible =
-                floor ? oracle_light(scene->lights, position, up, 6, box_blocks, scene->instances[1].matrix).visible : 0.5;
+                floor ? oracle_light(scene->lights, position, up, 6, box_blocks, scene->instances[1].matrix).visible
+                      : 0.5;
             regions[y * WIDTH + x] = visible == 0 ? UMBRA : visible > 0.9999 ? LIT : OTHER;
         }
 }
@@ -33,7 +34,8 @@ struct wrong {
     int region, pixels, wide;
 };
 
-static bool is_wrong(const struct render *render, const enum region *regions, enum region region, uint32_t x, uint32_t y) {
+static bool is_wrong(const struct render *render, const enum region *regions, enum region region, uint32_t x,
+                     uint32_t y) {
     const uint32_t i = y * WIDTH + x;
     return x < WIDTH && y < HEIGHT && regions[i] == region && (render->shadow[3 * i] > 0.5f) == (region == UMBRA);
 }
@@ -70,10 +72,11 @@ static void contact(enum test_light light, float height) {
         if (t == 0)
             find_regions(&render, scene, &settings, regions);
         const struct wrong gap = count_wrong(&render, regions, UMBRA), line = count_wrong(&render, regions, LIT);
-        printf("%-9s box %.2f m high under %-9s umbra of %d pixels, %d lit, %d in gaps wider than 1 pixel; of %d lit pixels "
+        printf("%-9s box %.2f m high under %-9s umbra of %d pixels, %d lit, %d in gaps wider than 1 pixel; of %d lit "
+               "pixels "
                "%d dark, %d in lines wider than 1 pixel\n",
-               info.id, (double)height, test_light_names[light], gap.region, gap.pixels, gap.wide, line.region, line.pixels,
-               line.wide);
+               info.id, (double)height, test_light_names[light], gap.region, gap.pixels, gap.wide, line.region,
+               line.pixels, line.wide);
         CHECK(gap.region > 500 && line.region > 500);
         CHECK_INT(gap.wide, 0);
         CHECK_INT(line.wide, 0);

@@ -58,8 +58,8 @@ static void crops(const char *scene_name, enum test_light light, const char *tec
         render_free(&part);
     }
     printf("%-9s %s, %s, %s camera, %u samples: %d crops of %u x %u, %d differ\n", technique, scene_name,
-           test_light_names[light], scene->camera.projection == PNB_PERSPECTIVE ? "perspective" : "orthographic", samples,
-           CROPS, settings.width, settings.height, different);
+           test_light_names[light], scene->camera.projection == PNB_PERSPECTIVE ? "perspective" : "orthographic",
+           samples, CROPS, settings.width, settings.height, different);
     render_free(&full);
     test_scene_destroy(&test);
 }

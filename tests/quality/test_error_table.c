@@ -24,30 +24,18 @@ bool tool_error(const char *format, ...) {
 }
 
 /* Highest RMSE of techniques on a scene with its own light. HARD and PCF do not know the light's size, so theirs
- * is what the scene makes it, and is kept for changes to be seen. A ceiling is the figure of the quick table on llvmpipe
- * plus a twentieth and 0.002: other OpenGL implementations rasterise a little differently. */
+ * is what the scene makes it, and is kept for changes to be seen. A ceiling is the figure of the quick table on
+ * llvmpipe plus a twentieth and 0.002: other OpenGL implementations rasterise a little differently. */
 static const struct ceiling {
     const char *scene;
     double hard, pcf, pcss;
 } ceilings[] = {
-    {"half-plane", 0.152, 0.152, 0.007},
-    {"ball", 0.130, 0.126, 0.030},
-    {"hover", 0.045, 0.035, 0.006},
-    {"slot", 0.178, 0.167, 0.006},
-    {"discs", 0.171, 0.169, 0.041},
-    {"slats", 0.205, 0.197, 0.067},
-    {"perforated", 0.236, 0.205, 0.018},
-    {"slanted-sheet", 0.224, 0.221, 0.041},
-    {"plane", 0.002, 0.002, 0.002},
-    {"sphere", 0.091, 0.057, 0.030},
-    {"box", 0.052, 0.037, 0.011},
-    {"fence", 0.233, 0.119, 0.025},
-    {"stairs", 0.076, 0.055, 0.029},
-    {"lantern", 0.112, 0.099, 0.049},
-    {"tall-box", 0.086, 0.082, 0.018},
-    {"cubes", 0.245, 0.179, 0.101},
-    {"benchmark", 0.139, 0.107, 0.062},
-    {"all-lights", 0.020, 0.013, 0.007},
+    {"half-plane", 0.152, 0.152, 0.007}, {"ball", 0.130, 0.126, 0.030},          {"hover", 0.045, 0.035, 0.006},
+    {"slot", 0.178, 0.167, 0.006},       {"discs", 0.171, 0.169, 0.041},         {"slats", 0.205, 0.197, 0.067},
+    {"perforated", 0.236, 0.205, 0.018}, {"slanted-sheet", 0.224, 0.221, 0.041}, {"plane", 0.002, 0.002, 0.002},
+    {"sphere", 0.091, 0.057, 0.030},     {"box", 0.052, 0.037, 0.011},           {"fence", 0.233, 0.119, 0.025},
+    {"stairs", 0.076, 0.055, 0.029},     {"lantern", 0.112, 0.099, 0.049},       {"tall-box", 0.086, 0.082, 0.018},
+    {"cubes", 0.245, 0.179, 0.101},      {"benchmark", 0.139, 0.107, 0.062},     {"all-lights", 0.020, 0.013, 0.007},
 };
 
 /* 0.3 where none is stored: a grey image is hardly worse. */
@@ -141,8 +129,8 @@ int main(int count, char **arguments) {
     const uint32_t samples = count > 1 ? (uint32_t)atoi(arguments[1]) : QUICK_SAMPLES;
     const uint32_t height = count > 2 ? (uint32_t)atoi(arguments[2]) : QUICK_HEIGHT;
     quality_open();
-    printf("against REFERENCE of %u x %u light samples, %u rows, one sample per pixel; SSIM: %s\n", samples, samples, height,
-           SSIM_TEXT);
+    printf("against REFERENCE of %u x %u light samples, %u rows, one sample per pixel; SSIM: %s\n", samples, samples,
+           height, SSIM_TEXT);
     list_techniques();
     printf("%-24s", "");
     for (int t = 0; t < technique_count; t++)

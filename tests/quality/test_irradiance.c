@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * The light that arrives where nothing is in between: Combined of a white plane against irradiance summed over points of
- * the emitter, for every type and shape, tilted, off the plane's centre, and partly below its horizon. */
+ * The light that arrives where nothing is in between: Combined of a white plane against irradiance summed over points
+ * of the emitter, for every type and shape, tilted, off the plane's centre, and partly below its horizon. */
 #include "oracle.h"
 #include "quality.h"
 
@@ -8,14 +8,16 @@
 #define SIDE   12
 #define POINTS 96
 
-/* One light over the plane z = 0. The rotation (degrees around X, then Y) tips its axis, which is down to begin with. */
+/* One light over the plane z = 0. The rotation (degrees around X, then Y) tips its axis, which is down to begin with.
+ */
 struct light_case {
     const char *name;
     pnb_light light;
     float tip_x, tip_y, position[3], scale[3];
 };
 
-#define LIGHT(...) {.struct_size = sizeof(pnb_light), __VA_ARGS__}
+#define LIGHT(...)                                                                                                     \
+    { .struct_size = sizeof(pnb_light), __VA_ARGS__ }
 
 static const struct light_case cases[] = {
     {"rectangle", LIGHT(.size = {1, 0.5f}), 0, 0, {0, 0, 2}, {1, 1, 1}},
@@ -26,16 +28,29 @@ static const struct light_case cases[] = {
     {"rectangle, 1 mm", LIGHT(.size = {1e-3f, 1e-3f}), 30, 0, {0, -1, 2}, {1, 1, 1}},
     {"ellipse", LIGHT(.shape = PNB_AREA_ELLIPSE, .size = {1, 0.5f}), 0, 0, {0, 0, 2}, {1, 1, 1}},
     {"ellipse, near", LIGHT(.shape = PNB_AREA_ELLIPSE, .size = {2, 2}), 0, 0, {0.3f, 0.1f, 0.4f}, {1, 1, 1}},
-    {"ellipse, tilted 40 degrees", LIGHT(.shape = PNB_AREA_ELLIPSE, .size = {1, 0.5f}), 0, 40, {-1, 0.2f, 1.5f}, {1, 1, 1}},
+    {"ellipse, tilted 40 degrees",
+     LIGHT(.shape = PNB_AREA_ELLIPSE, .size = {1, 0.5f}),
+     0,
+     40,
+     {-1, 0.2f, 1.5f},
+     {1, 1, 1}},
     {"ellipse through the plane", LIGHT(.shape = PNB_AREA_ELLIPSE, .size = {1, 2}), -90, 0, {0, 2.6f, 0.3f}, {1, 1, 1}},
     {"point, hard", LIGHT(.type = PNB_LIGHT_POINT), 0, 0, {0.5f, 0, 1}, {1, 1, 1}},
     {"point, radius 0.5", LIGHT(.type = PNB_LIGHT_POINT, .radius = 0.5f), 0, 0, {0.5f, 0, 1}, {1, 1, 1}},
     {"point, radius 1, near", LIGHT(.type = PNB_LIGHT_POINT, .radius = 1), 0, 0, {2, 0, 0.5f}, {1, 1, 1}},
     {"spot", LIGHT(.type = PNB_LIGHT_SPOT, .spot_angle = 1.2f, .spot_blend = 0.4f), 20, 0, {0, -0.5f, 2}, {1, 1, 1}},
     {"spot, radius 0.4, scaled",
-     LIGHT(.type = PNB_LIGHT_SPOT, .radius = 0.4f, .spot_angle = 1.2f, .spot_blend = 1), 0, 25, {-0.5f, 0, 2}, {2, 1, 1}},
+     LIGHT(.type = PNB_LIGHT_SPOT, .radius = 0.4f, .spot_angle = 1.2f, .spot_blend = 1),
+     0,
+     25,
+     {-0.5f, 0, 2},
+     {2, 1, 1}},
     {"spot that falls with the cosine",
-     LIGHT(.type = PNB_LIGHT_SPOT, .flags = PNB_LIGHT_COSINE_SPOT, .spot_angle = 2), 0, 0, {0.2f, 0, 1}, {1, 1, 1}},
+     LIGHT(.type = PNB_LIGHT_SPOT, .flags = PNB_LIGHT_COSINE_SPOT, .spot_angle = 2),
+     0,
+     0,
+     {0.2f, 0, 1},
+     {1, 1, 1}},
     {"sun, hard", LIGHT(.type = PNB_LIGHT_SUN), 50, 0, {0, 0, 5}, {1, 1, 1}},
     {"sun, 10 degrees", LIGHT(.type = PNB_LIGHT_SUN, .angle = 0.1745f), 50, 10, {0, 0, 5}, {1, 1, 1}},
     {"sun, 20 degrees, half set", LIGHT(.type = PNB_LIGHT_SUN, .angle = 0.349f), 87, 0, {0, 0, 5}, {1, 1, 1}},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * The library's camera and light matrices against those of GLM. */
-#include "glm_oracle.h"
 #include "check.h"
+#include "glm_oracle.h"
 
 #include "render/frame.h"
 
@@ -59,7 +59,8 @@ static double camera_error(pnb_projection projection, bool shifted) {
     const float x = shifted ? random_between(-2, 2) : 0, y = shifted ? random_between(-2, 2) : 0;
     const float window[4] = {x - half_width, x + half_width, y - half_height, y + half_height};
     memcpy(camera.window, window, sizeof window);
-    const struct settings settings = {.width = 640, .height = 360, .crop = {20, 30, 40, 50}, .samples = 1, .filter_width = 1.5f};
+    const struct settings settings = {
+        .width = 640, .height = 360, .crop = {20, 30, 40, 50}, .samples = 1, .filter_width = 1.5f};
     const float near_depth = random_between(0.01f, 1), far_depth = near_depth * random_between(2, 1000);
     struct camera_block block;
     mat4 clip;
@@ -77,7 +78,8 @@ static void cameras(void) {
             double worst = 0;
             for (int i = 0; i < 200; i++)
                 worst = fmax(worst, camera_error((pnb_projection)projection, shifted));
-            printf("camera, %s%s: 200 matrices within %.2g of GLM's\n", names[projection], shifted ? ", shifted" : "", worst);
+            printf("camera, %s%s: 200 matrices within %.2g of GLM's\n", names[projection], shifted ? ", shifted" : "",
+                   worst);
             CHECK_AT_MOST(worst, TOLERANCE);
         }
 }
@@ -85,11 +87,8 @@ static void cameras(void) {
 /* ---- Lights ---- */
 
 static void random_light(pnb_light_type type, bool mirrored, struct scene_light *light) {
-    *light = (struct scene_light){.type = type,
-                                  .size = {1, 2},
-                                  .radius = 0.2f,
-                                  .angle = 0.1f,
-                                  .spot_angle = random_between(0.2f, 3.1f)};
+    *light = (struct scene_light){
+        .type = type, .size = {1, 2}, .radius = 0.2f, .angle = 0.1f, .spot_angle = random_between(0.2f, 3.1f)};
     const float scale[3] = {random_between(0.2f, 3) * (mirrored ? -1.0f : 1.0f), random_between(0.2f, 3),
                             random_between(0.2f, 3)};
     random_matrix(scale, light->matrix);
@@ -139,10 +138,10 @@ static void lights(void) {
             random_light((pnb_light_type)type, i % 2 == 1, &light);
             emitter_init(&emitter, &light, (const vec3){1, 2, 3});
             for (int row = 0; row < 3; row++) /* it shines along its local -Z */
-                tilt = fmax(tilt, type == PNB_LIGHT_POINT ? 0
-                                                          : fabs((double)emitter.frame[2][row] +
-                                                                 (double)light.matrix[8 + row] /
-                                                                     (double)glm_vec3_norm(&light.matrix[8])));
+                tilt = fmax(tilt, type == PNB_LIGHT_POINT
+                                      ? 0
+                                      : fabs((double)emitter.frame[2][row] +
+                                             (double)light.matrix[8 + row] / (double)glm_vec3_norm(&light.matrix[8])));
             fit_around(&emitter, i % 4 < 2, &views);
             singles += views.single;
             for (int face = 0; face < MAX_LIGHT_VIEWS; face++) {
@@ -152,8 +151,9 @@ static void lights(void) {
                 worst = fmax(worst, view_error(&emitter, &views.views[views.layer_of_face[face]], face));
             }
         }
-        printf("light %s: %d single views, faces +Z +X -X +Y -Y -Z %d %d %d %d %d %d: within %.2g of GLM's, axis %.2g\n",
-               names[type], singles, faces[0], faces[1], faces[2], faces[3], faces[4], faces[5], worst, tilt);
+        printf(
+            "light %s: %d single views, faces +Z +X -X +Y -Y -Z %d %d %d %d %d %d: within %.2g of GLM's, axis %.2g\n",
+            names[type], singles, faces[0], faces[1], faces[2], faces[3], faces[4], faces[5], worst, tilt);
         CHECK_AT_MOST(worst, TOLERANCE);
         CHECK_AT_MOST(tilt, TOLERANCE);
         CHECK(singles > 0 || type == PNB_LIGHT_POINT);

@@ -37,7 +37,8 @@ static void bench_close(struct bench *bench) {
 }
 
 /* All layers of a level. */
-static float *read_texture(const struct gl *gl, const struct gl_texture *texture, int level, GLenum format, int channels) {
+static float *read_texture(const struct gl *gl, const struct gl_texture *texture, int level, GLenum format,
+                           int channels) {
     const size_t side = (size_t)(texture->width >> level);
     float *pixels = malloc(side * side * (size_t)texture->layers * (size_t)channels * sizeof *pixels);
     gl_texture_bind(gl, texture, 0);
@@ -69,15 +70,18 @@ static void upload_random_map(struct bench *bench, int side, int layers, struct 
 
 /* Texels of the pyramid that are not exactly the least and greatest depth of the texels below them. Beyond the map's
  * border lie copies of its last row and column. */
-static int wrong_texels(const float *level_pixels, int level_side, int scale, const float *depths, int side, int layers) {
+static int wrong_texels(const float *level_pixels, int level_side, int scale, const float *depths, int side,
+                        int layers) {
     int wrong = 0;
     for (int i = 0; i < level_side * level_side * layers; i++) {
-        const int x0 = i % level_side * scale, y0 = i / level_side % level_side * scale, layer = i / level_side / level_side;
+        const int x0 = i % level_side * scale, y0 = i / level_side % level_side * scale,
+                  layer = i / level_side / level_side;
         float least = INFINITY, greatest = -INFINITY;
         for (int y = y0; y < y0 + scale; y++)
             for (int x = x0; x < x0 + scale; x++) {
                 const int column = x < side ? x : side - 1, row = y < side ? y : side - 1;
-                const float depth = depths[((size_t)layer * (size_t)side + (size_t)row) * (size_t)side + (size_t)column];
+                const float depth =
+                    depths[((size_t)layer * (size_t)side + (size_t)row) * (size_t)side + (size_t)column];
                 least = fminf(least, depth);
                 greatest = fmaxf(greatest, depth);
             }
@@ -115,7 +119,8 @@ static void pyramid_is_exact(struct bench *bench, int side, int layers) {
 
 /* Linear depth of every texel of a tilted plane, met at the texel's centre; 1 where it is missed. */
 static double map_error(const struct light_view *view, const float *depths, int side, int *missed) {
-    const double normal[3] = {0.3, -0.2, -1}, distance = -4; /* normal . p = distance, of the plane z = 4 + .3 x - .2 y */
+    const double normal[3] = {0.3, -0.2, -1},
+                 distance = -4; /* normal . p = distance, of the plane z = 4 + .3 x - .2 y */
     double worst = 0;
     for (int i = 0; i < side * side; i++) {
         const double q[2] = {(double)view->rect[0] + (i % side + 0.5) / side / (double)view->rect[2],
@@ -123,7 +128,8 @@ static double map_error(const struct light_view *view, const float *depths, int 
         const double slope = normal[0] * q[0] + normal[1] * q[1];
         const double z = view->perspective != 0.0f ? distance / (slope + normal[2]) : (distance - slope) / normal[2];
         const double x = view->perspective != 0.0f ? q[0] * z : q[0], y = view->perspective != 0.0f ? q[1] * z : q[1];
-        const double depth = (double)depths[i] * ((double)view->far_depth - (double)view->near_depth) + (double)view->near_depth;
+        const double depth =
+            (double)depths[i] * ((double)view->far_depth - (double)view->near_depth) + (double)view->near_depth;
         /* The plane's square: -2..2; its border texels may go either way. */
         const double inside = 2 - fmax(fabs(x), fabs(y));
         if (inside > 0.01)
@@ -146,8 +152,12 @@ static void maps_hold_linear_depth(struct bench *bench, int side, bool perspecti
     pnb_mesh *mesh;
     if (!CHECK_RESULT(pnb_mesh_create(&desc, &mesh), PNB_OK))
         return;
-    pnb_instance instance = {.struct_size = sizeof instance, .mesh = mesh, .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-    pnb_scene from = {.struct_size = sizeof from, .instance_count = 1, .instances = &instance, .camera = {.struct_size = sizeof(pnb_camera)}};
+    pnb_instance instance = {
+        .struct_size = sizeof instance, .mesh = mesh, .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+    pnb_scene from = {.struct_size = sizeof from,
+                      .instance_count = 1,
+                      .instances = &instance,
+                      .camera = {.struct_size = sizeof(pnb_camera)}};
     struct scene *scene;
     CHECK_RESULT(scene_create(&from, &bench->messages, &scene), PNB_OK);
     bench->frame.scene = scene;

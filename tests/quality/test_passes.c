@@ -51,8 +51,8 @@ static void values_are_shares(void) {
                 shadowed += lowest < 0.5f;
                 renders++;
             }
-        printf("%-9s %d scenes: %d values out of range or passes missing; %d scenes with a shadow\n", info.id, renders, bad,
-               shadowed);
+        printf("%-9s %d scenes: %d values out of range or passes missing; %d scenes with a shadow\n", info.id, renders,
+               bad, shadowed);
         /* All but the scene without a caster, under each of the lights. */
         CHECK_INT(shadowed, renders - TEST_LIGHT_COUNT);
     }
@@ -60,7 +60,8 @@ static void values_are_shares(void) {
 
 /* ---- Several lights ---- */
 
-static struct render render_lights(const pnb_scene *from, const pnb_light *lights, uint32_t count, const char *technique) {
+static struct render render_lights(const pnb_scene *from, const pnb_light *lights, uint32_t count,
+                                   const char *technique) {
     pnb_scene scene = *from;
     scene.lights = lights;
     scene.light_count = count;
@@ -101,7 +102,8 @@ static void lights_add_up(const char *technique) {
         if (unshadowed[k] > 0)
             shadow_error = fmax(shadow_error, fabs((double)together.shadow[k] - shadowed[k] / unshadowed[k]));
     }
-    printf("%-9s five lights: %d values of Shadow.<light> differ from the light alone; Combined off the sum by %.2g, Shadow "
+    printf("%-9s five lights: %d values of Shadow.<light> differ from the light alone; Combined off the sum by %.2g, "
+           "Shadow "
            "off the quotient by %.2g\n",
            technique, different, combined_error, shadow_error);
     CHECK_INT(different, 0);

@@ -86,8 +86,8 @@ static double difference(const struct moved *a, const struct moved *b, const pnb
     return rmse;
 }
 
-/* Turned, the maps' texels lie elsewhere: the difference is that of two maps of the same size. It may be as large as what
- * a map moved by half a texel makes, a few per cent of the pixels at edges. */
+/* Turned, the maps' texels lie elsewhere: the difference is that of two maps of the same size. It may be as large as
+ * what a map moved by half a texel makes, a few per cent of the pixels at edges. */
 #define TURNED 0.06
 
 static void check_scene(const char *name, enum test_light light, const char *technique) {
@@ -112,8 +112,8 @@ static void check_scene(const char *name, enum test_light light, const char *tec
     copy_scene(&base.scene, &other);
     change_matrices(&other, rotate, (const double[9]){0.36, 0.48, -0.8, -0.8, 0.6, 0, 0.48, 0.64, 0.6});
     const double turned = difference(&base, &other, &settings);
-    printf("%-9s %-9s under %-9s RMSE 1000 km away %.2g, 1000 times as large %.2g, as small %.2g, turned %.2g\n", technique,
-           name, test_light_names[light], far_away, large, small, turned);
+    printf("%-9s %-9s under %-9s RMSE 1000 km away %.2g, 1000 times as large %.2g, as small %.2g, turned %.2g\n",
+           technique, name, test_light_names[light], far_away, large, small, turned);
     /* All matrices are exact there, so only the rounding of differences is left, which flips a few texels' tests. */
     CHECK_AT_MOST(far_away, 2e-3);
     CHECK_AT_MOST(large, 0.01);

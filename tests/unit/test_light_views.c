@@ -55,7 +55,8 @@ static void point_in_box(const struct box *box, vec3 point) {
 /* ---- Faces ---- */
 
 static void faces_cover_all_directions_once(void) {
-    struct scene_light light = {.type = PNB_LIGHT_POINT, .radius = 0.1f, .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}};
+    struct scene_light light = {
+        .type = PNB_LIGHT_POINT, .radius = 0.1f, .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}};
     struct emitter emitter;
     struct light_views views;
     emitter_init(&emitter, &light, (const vec3){0, 0, 0});
@@ -67,7 +68,11 @@ static void faces_cover_all_directions_once(void) {
     for (int i = 0; i < views.count; i++) {
         mat3 axes, product;
         glm_mat4_pick3(views.views[i].from_world, axes);
-        glm_mat3_mul(axes, (vec3[3]){{axes[0][0], axes[1][0], axes[2][0]}, {axes[0][1], axes[1][1], axes[2][1]}, {axes[0][2], axes[1][2], axes[2][2]}}, product);
+        glm_mat3_mul(axes,
+                     (vec3[3]){{axes[0][0], axes[1][0], axes[2][0]},
+                               {axes[0][1], axes[1][1], axes[2][1]},
+                               {axes[0][2], axes[1][2], axes[2][2]}},
+                     product);
         for (int k = 0; k < 9; k++)
             crooked = fmax(crooked, fabs((double)product[k / 3][k % 3] - (k % 4 == 0)));
         crooked = fmax(crooked, fabs((double)glm_mat3_det(axes) - 1));
@@ -131,7 +136,8 @@ static void emitter_point(const struct emitter *emitter, const vec3 receiver, ve
 static bool point_on_segment(const vec3 from, const vec3 to, const struct box *box, vec3 point) {
     float low = 1e-4f, high = 1;
     for (int i = 0; i < 3; i++) {
-        const float step = to[i] - from[i], a = (box->minimum[i] - from[i]) / step, b = (box->maximum[i] - from[i]) / step;
+        const float step = to[i] - from[i], a = (box->minimum[i] - from[i]) / step,
+                    b = (box->maximum[i] - from[i]) / step;
         low = fmaxf(low, fminf(a, b));
         high = fminf(high, fmaxf(a, b));
     }
@@ -187,8 +193,8 @@ static float view_tangent(const struct emitter *emitter, int face, const vec3 po
     return along > 0 ? across / along : INFINITY;
 }
 
-/* Whether the blocker lies in the receiver's view. Two limits are the design's own: a view is no wider than a half-width
- * of 2.5 (the face of a cube: 1.5), and nothing nearer than 1e-4 of its far plane is drawn. */
+/* Whether the blocker lies in the receiver's view. Two limits are the design's own: a view is no wider than a
+ * half-width of 2.5 (the face of a cube: 1.5), and nothing nearer than 1e-4 of its far plane is drawn. */
 static void check_blocker(const struct emitter *emitter, const struct light_views *views, const vec3 receiver,
                           const vec3 blocker, struct tally *tally) {
     const int face = views->single ? 0 : face_of(emitter, receiver), layer = views->layer_of_face[face];

@@ -84,7 +84,8 @@ static void pairs_are_opposite(void) {
     const int count = pattern_fill(PATTERN_VOGEL, 64, true, 0, points);
     double worst = 0;
     for (int i = 0; i < count; i += 2)
-        worst = fmax(worst, hypot((double)(points[i][0] + points[i + 1][0]), (double)(points[i][1] + points[i + 1][1])));
+        worst =
+            fmax(worst, hypot((double)(points[i][0] + points[i + 1][0]), (double)(points[i][1] + points[i + 1][1])));
     CHECK_AT_MOST(worst, 1e-6);
 }
 
@@ -100,8 +101,8 @@ static void turns_complete_each_other(void) {
         }
         pattern_fill(PATTERN_VOGEL, POINTS, disk, 0, once);
         const struct evenness one = measure(once, POINTS, disk), together = measure(all, TURNS * POINTS, disk);
-        printf("%s: share beside a line within %.4f with 16 points, %.4f with 8 such patterns\n", disk ? "disk" : "square",
-               one.worst, together.worst);
+        printf("%s: share beside a line within %.4f with 16 points, %.4f with 8 such patterns\n",
+               disk ? "disk" : "square", one.worst, together.worst);
         CHECK_AT_MOST(together.worst, 0.5 * one.worst);
     }
 }
@@ -135,8 +136,8 @@ static void disk_map_preserves_area(void) {
         const double angle = atan2((double)point[1], (double)point[0]);
         sector += angle > 0.3 && angle < 1.4;
     }
-    printf("map to the disk: %.5f of the area within radius 0.6, %.5f within 1.1 radians\n", (double)inner / SIDE / SIDE,
-           (double)sector / SIDE / SIDE);
+    printf("map to the disk: %.5f of the area within radius 0.6, %.5f within 1.1 radians\n",
+           (double)inner / SIDE / SIDE, (double)sector / SIDE / SIDE);
     CHECK_NEAR((double)inner / SIDE / SIDE, 0.36, 1e-3);
     CHECK_NEAR((double)sector / SIDE / SIDE, 1.1 / (2 * PI), 1e-3);
     float center[2] = {0, 0};
@@ -198,8 +199,8 @@ static void pixel_samples_follow_the_filter(void) {
             square[axis] += (double)offset[axis] * (double)offset[axis] / COUNT;
         }
     }
-    printf("pixel samples: mean %.4f %.4f, deviation %.4f %.4f, of the filter %.4f\n", mean[0], mean[1], sqrt(square[0]),
-           sqrt(square[1]), expected);
+    printf("pixel samples: mean %.4f %.4f, deviation %.4f %.4f, of the filter %.4f\n", mean[0], mean[1],
+           sqrt(square[0]), sqrt(square[1]), expected);
     for (int axis = 0; axis < 2; axis++) {
         CHECK_NEAR(mean[axis], 0, 2e-3);
         CHECK_NEAR(sqrt(square[axis]), expected, 0.01 * expected);
