@@ -37,8 +37,8 @@ vec2 height_range(receiver r, vec2 extent, vec2 depths) {
 }
 
 // 1: no texel in the rectangle center +- extent can block the receiver. 0: every texel does. 0.5: undecided.
-float classify(receiver r, vec2 extent) {
-    vec2 depths = depth_range(r, extent);
+// depths: depth_range of that rectangle, or of a larger one.
+float classify(receiver r, vec2 extent, vec2 depths) {
     // A texel is tested at its centre, up to half of one outside the rectangle.
     if (depths.x >= r.limit || height_range(r, extent + 1.0, vec2(depths.x, r.limit)).y <= r.plane)
         return 1.0;

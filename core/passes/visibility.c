@@ -69,7 +69,8 @@ static void set_parameters(const struct gl *gl, GLuint program, const struct set
 static void upload_taps(struct frame *frame, GLuint program, bool ellipse) {
     const struct gl *gl = frame->gl;
     struct taps taps = {0};
-    frame->settings->technique->taps(frame->settings->parameters, ellipse, frame->sample, &taps);
+    frame->settings->technique->taps(frame->settings->parameters, ellipse, frame->sample, frame->settings->samples,
+                                         &taps);
     gl->BindBuffer(GL_UNIFORM_BUFFER, frame->renderer->tap_buffer);
     gl->BufferData(GL_UNIFORM_BUFFER, sizeof taps.search + sizeof taps.filter, &taps, GL_STREAM_DRAW);
     gl->BindBufferBase(GL_UNIFORM_BUFFER, 2, frame->renderer->tap_buffer);

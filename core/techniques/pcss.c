@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "technique.h"
 
+#include <math.h>
+
 enum { PATTERN, BLOCKER_SAMPLES, FILTER_SAMPLES, BLOCKER_AVERAGE, SEARCH_REDUCTION, MIN_MAX };
 
 static const char *const patterns[] = {"VOGEL", "GRID", NULL};
@@ -24,15 +26,16 @@ static const struct parameter parameters[] = {
                          .type = PNB_INT,
                          .minimum = 1,
                          .maximum = MAX_TAPS,
-                         .default_value = 32},
+                         .default_value = 24},
     [FILTER_SAMPLES] = {.name = "filter_samples",
                         .label = "Filter Samples",
-                        .description = "Points of the penumbra filter; each is one shade of grey (papers: 15 x 15 = 225)",
+                        .description = "Points of the penumbra filter; each is one shade of grey (papers: 15 x 15 = 225). "
+                                       "Anti-aliasing samples share them, down to 16 each",
                         .unit = "",
                         .type = PNB_INT,
                         .minimum = 1,
                         .maximum = MAX_TAPS,
-                        .default_value = 64},
+                        .default_value = 48},
     [BLOCKER_AVERAGE] = {.name = "blocker_average",
                          .label = "Blocker Average",
                          .description = "AREA: a blocker counts by the share of the light it hides. EQUAL: all count the "
@@ -59,10 +62,20 @@ static const struct parameter parameters[] = {
                  .default_value = 1},
     {0}};
 
-static void pcss_taps(const double *values, bool ellipse, uint32_t sample, struct taps *taps) {
+/* The samples of a pixel share the points: each takes a part of them, turned against the others', but no less than
+ * what finds thin casters and keeps one sample from banding. */
+static int shared_count(double count, uint32_t samples) {
+    const double least = 16.0;
+    const double share = ceil(count / (double)samples);
+    return (int)fmin(count, fmax(share, least));
+}
+
+static void pcss_taps(const double *values, bool ellipse, uint32_t sample, uint32_t samples, struct taps *taps) {
     const enum pattern pattern = (enum pattern)values[PATTERN];
-    taps->search_count = pattern_fill(pattern, (int)values[BLOCKER_SAMPLES], ellipse, sample, taps->search);
-    taps->filter_count = pattern_fill(pattern, (int)values[FILTER_SAMPLES], ellipse, sample, taps->filter);
+    taps->search_count =
+        pattern_fill(pattern, shared_count(values[BLOCKER_SAMPLES], samples), ellipse, sample, taps->search);
+    taps->filter_count =
+        pattern_fill(pattern, shared_count(values[FILTER_SAMPLES], samples), ellipse, sample, taps->filter);
 }
 
 const struct technique technique_pcss = {

@@ -23,8 +23,8 @@ struct technique {
     uint32_t needs;                     /* enum technique_needs */
     const char *shader;                 /* file of technique_visibility; NULL with `draw` */
     /* Optional: sample points for the shader's taps (common_taps.glsl) for a light whose emitter is elliptic or not;
-     * sample: index of the anti-aliasing sample. */
-    void (*taps)(const double *parameters, bool ellipse, uint32_t sample, struct taps *taps);
+     * sample: index of the anti-aliasing sample, of `samples` in all. */
+    void (*taps)(const double *parameters, bool ellipse, uint32_t sample, uint32_t samples, struct taps *taps);
     /* Optional: draws visibility itself instead of shadow maps and one visibility pass. */
     pnb_result (*draw)(struct frame *frame, const struct frame_light *light);
 };
