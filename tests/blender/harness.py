@@ -11,6 +11,7 @@ import bpy
 from exr import read_exr
 
 OUTPUT = os.environ['TEST_OUTPUT']
+ADDON = os.environ['TEST_ADDON']
 
 
 def output(name):
@@ -124,9 +125,32 @@ class SceneTest(unittest.TestCase):
         return path
 
 
+class CyclesTest(SceneTest):
+    """Renders the same scene with Cycles of the running Blender, light straight from the lamps only."""
+
+    def setUp(self):
+        super().setUp()
+        self.scene.world = None
+        cycles = self.scene.cycles
+        cycles.max_bounces = 0
+        cycles.samples = 1024
+        cycles.use_adaptive_sampling = cycles.use_denoising = False
+        cycles.light_sampling_threshold = 0.0
+        cycles.filter_width = self.scene.render.filter_size = 1.0
+        self.scene.penumbra.samples = 64
+
+    def both(self):
+        """The pictures of Cycles and of ours."""
+        pictures = []
+        for engine in ('CYCLES', 'PENUMBRA'):
+            self.scene.render.engine = engine
+            pictures.append(self.render(engine))
+        return pictures
+
+
 def blender_command(*arguments):
     """A fresh Blender with the add-on."""
-    return [bpy.app.binary_path, '-b', '--factory-startup', '--addons', 'penumbra', *arguments]
+    return [bpy.app.binary_path, '-b', '--factory-startup', '--addons', ADDON, *arguments]
 
 
 def run_blender(*arguments, environment=None):

@@ -8,10 +8,21 @@ build=$(CDPATH= cd -- "$1" && pwd)
 shift
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+blender=${BLENDER:-blender}
 mkdir -p "$work/scripts/addons" "$work/config" "$work/output"
-zip=$(ls "$build"/penumbra-*.zip)
-(cd "$work/scripts/addons" && cmake -E tar xf "$zip")
-export BLENDER_USER_SCRIPTS="$work/scripts" BLENDER_USER_CONFIG="$work/config" TEST_OUTPUT="$work/output"
-export PYTHONDONTWRITEBYTECODE=1 LC_ALL=C.UTF-8
+export BLENDER_USER_RESOURCES="$work" BLENDER_USER_SCRIPTS="$work/scripts" BLENDER_USER_CONFIG="$work/config"
+export TEST_OUTPUT="$work/output" PYTHONDONTWRITEBYTECODE=1 LC_ALL=C.UTF-8
 unset DISPLAY WAYLAND_DISPLAY PENUMBRA_LIBRARY PENUMBRA_CAPTURE
-"${BLENDER:-blender}" -b --factory-startup --python-exit-code 1 --python "$here/run_tests.py" -- "$@"
+zip=$(ls "$build"/penumbra-*.zip)
+case $("$blender" --version) in
+"Blender 3."* | "Blender 4.0"* | "Blender 4.1"*)
+    export TEST_ADDON=penumbra
+    python3 -m zipfile -e "$zip" "$work/scripts/addons"
+    ;;
+*)
+    export TEST_ADDON=bl_ext.user_default.penumbra
+    "$blender" -b --factory-startup --command extension validate "$zip"
+    "$blender" -b --factory-startup --command extension install-file --repo user_default "$zip"
+    ;;
+esac
+"$blender" -b --factory-startup --python-exit-code 1 --python "$here/run_tests.py" -- "$@"

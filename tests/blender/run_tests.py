@@ -8,14 +8,17 @@ import unittest
 import addon_utils
 import bpy
 
+# As an extension the add-on lies in the package of its repository.
+ADDON = os.environ['TEST_ADDON']
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, FOLDER)
 
 
 def main():
     names = sys.argv[sys.argv.index('--') + 1:] if '--' in sys.argv else []
-    if addon_utils.enable('penumbra', default_set=True) is None:
+    if addon_utils.enable(ADDON, default_set=True) is None:
         sys.exit("the add-on cannot be enabled")
+    sys.modules['penumbra'] = sys.modules[ADDON]
     loader = unittest.defaultTestLoader
     suite = loader.loadTestsFromNames(names) if names else loader.discover(FOLDER)
     result = unittest.TextTestRunner(stream=sys.stdout, verbosity=2).run(suite)

@@ -3,37 +3,25 @@
 
 import math
 
-from harness import SceneTest, add_camera, add_light, add_plane, white_material
+from harness import CyclesTest, add_camera, add_light, add_plane, white_material
 
 SIDE = 24
 # Below this share of the brightest pixel the error counts against that share: the rim of a spot is all gradient.
 FLOOR = 0.05
 
 
-class Radiometry(SceneTest):
+class Radiometry(CyclesTest):
     def setUp(self):
         super().setUp()
         add_plane(half=20).data.materials.append(white_material())
         add_camera(type='ORTHO', ortho_scale=0.08 * SIDE)
         self.scene.render.resolution_x = self.scene.render.resolution_y = SIDE
-        self.scene.world = None
-        cycles = self.scene.cycles
-        cycles.max_bounces = 0
-        cycles.samples = 1024
-        cycles.use_adaptive_sampling = cycles.use_denoising = False
-        cycles.light_sampling_threshold = 0.0
-        cycles.filter_width = self.scene.render.filter_size = 1.0
-        self.scene.penumbra.samples = 64
-
-    def red(self, engine):
-        self.scene.render.engine = engine
-        return self.render(engine)['ViewLayer.Combined.R'][2]
 
     def check(self, tolerance, kind, **settings):
         settings.setdefault('location', (0.3, 0.2, 2.0))
         # The floor alone shadows nothing; how a technique's bias does at grazing angles is measured elsewhere.
         add_light("Light", kind, use_shadow=False, **settings)
-        expected, actual = self.red('CYCLES'), self.red('PENUMBRA')
+        expected, actual = (picture['ViewLayer.Combined.R'][2] for picture in self.both())
         brightest = max(expected)
         self.assertGreater(brightest, 0.0)
         errors = [abs(a - e) / max(e, FLOOR * brightest) for a, e in zip(actual, expected)]

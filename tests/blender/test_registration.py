@@ -10,7 +10,7 @@ import unittest
 import addon_utils
 import bpy
 
-from harness import output, run_blender
+from harness import ADDON, output, run_blender
 
 import penumbra
 from penumbra import capi, props
@@ -23,9 +23,9 @@ def registered():
     bases = (bpy.types.RenderEngine, bpy.types.AddonPreferences, bpy.types.PropertyGroup, bpy.types.Operator,
              bpy.types.Panel)
     found = {cls.__name__ for base in bases for cls in base.__subclasses__()
-             if cls.__module__.startswith('penumbra') and cls.is_registered}
+             if cls.__module__.startswith(ADDON) and cls.is_registered}
     found |= {panel.__name__ for panel in bpy.types.Panel.__subclasses__()
-              if 'PENUMBRA' in getattr(panel, 'COMPAT_ENGINES', ()) and not panel.__module__.startswith('penumbra')}
+              if 'PENUMBRA' in getattr(panel, 'COMPAT_ENGINES', ()) and not panel.__module__.startswith(ADDON)}
     found |= {owner.__name__ for owner in (bpy.types.Scene, bpy.types.ViewLayer) if hasattr(owner, 'penumbra')}
     return found | {handler.__module__ for handler in bpy.app.handlers.render_init}
 
@@ -36,13 +36,13 @@ class Registration(unittest.TestCase):
         self.assertGreater(before, {'PenumbraEngine', 'PenumbraSceneSettings', 'PENUMBRA_PT_technique', 'DATA_PT_lens',
                                     'Scene', 'ViewLayer'})
         for _ in range(20):
-            addon_utils.disable('penumbra')
+            addon_utils.disable(ADDON)
             self.assertEqual(registered(), set())
-            self.assertIsNotNone(addon_utils.enable('penumbra', default_set=True))
+            self.assertIsNotNone(addon_utils.enable(ADDON, default_set=True))
             self.assertEqual(registered(), before)
 
     def test_version_is_the_library_s(self):
-        version = '.'.join(str(number) for number in penumbra.bl_info['version'])
+        version = '.'.join(str(number) for number in addon_utils.module_bl_info(penumbra)['version'])
         self.assertEqual(version, capi.library().version().decode())
         with open(os.path.join(os.path.dirname(penumbra.__file__), 'blender_manifest.toml'), encoding='utf-8') as file:
             self.assertIn(f'version = "{version}"', file.read())

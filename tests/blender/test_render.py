@@ -5,7 +5,7 @@ import os
 
 import bpy
 
-from harness import SceneTest, add_camera, add_cube, add_light, add_plane, output, read_byte_image, white_material
+from harness import ADDON, SceneTest, add_camera, add_cube, add_light, add_plane, output, read_byte_image, white_material
 
 from penumbra import engine as penumbra_engine
 
@@ -257,7 +257,7 @@ class Robustness(SceneTest):
 
     def test_unknown_backend(self):
         self.still_life()
-        preferences = bpy.context.preferences.addons['penumbra'].preferences
+        preferences = bpy.context.preferences.addons[ADDON].preferences
         preferences.backend = 'nosuch'
         with self.assertRaisesRegex(RuntimeError, "nosuch"):
             self.render()

@@ -1,0 +1,134 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+set -euo pipefail
+
+help() {
+    cat <<EOT
+Usage: tests/blender/matrix.sh [--only VERSION] BUILD_DIR [TEST...]
+Runs the tests of this folder in three Blenders: the system's, and those of Debian trixie (4.3) and sid (5.2) in roots
+of their own, made with debootstrap from the mirror that apt uses and kept in BUILD_DIR/matrix, or in the folder that
+PENUMBRA_CACHE names. A root takes about 2 GB; delete it to make it anew. Needs root. The last line counts all tests.
+
+  --only VERSION   system, trixie or sid; may be given several times
+  TEST             a module, class or method such as test_render.Sizes
+EOT
+}
+
+fail() {
+    echo "matrix.sh: $1" >&2
+    exit 2
+}
+
+here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
+source=$(CDPATH='' cd -- "$here/../.." && pwd)
+versions=()
+while [ $# -gt 0 ]; do
+    case $1 in
+    --help) help; exit 0 ;;
+    --only)
+        [[ ${2-} =~ ^(system|trixie|sid)$ ]] || fail "--only needs system, trixie or sid"
+        versions+=("$2")
+        shift 2 ;;
+    -*) fail "unknown option '$1'; see --help" ;;
+    *) break ;;
+    esac
+done
+[ $# -gt 0 ] || { help >&2; exit 2; }
+[ -d "$1" ] || fail "there is no build folder '$1'"
+build=$(CDPATH='' cd -- "$1" && pwd)
+shift
+[ ${#versions[@]} -gt 0 ] || versions=(system trixie sid)
+cache=${PENUMBRA_CACHE:-$build/matrix}
+logs=$build/tests
+mkdir -p "$cache" "$logs"
+cache=$(CDPATH='' cd -- "$cache" && pwd)
+
+# ---- Roots ----
+
+# The mirror of the Debian release this machine runs, as apt knows it.
+mirror() {
+    local codename
+    codename=$(. /etc/os-release && echo "$VERSION_CODENAME")
+    apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "Codename: $codename" | head -n 1
+}
+
+# in_root ROOT COMMAND...: with its own mounts, which end with the command.
+in_root() {
+    # shellcheck disable=SC2016
+    unshare --mount sh -c '
+        root=$1 source=$2 build=$3
+        shift 3
+        mkdir -p "$root/penumbra/source" "$root/penumbra/build"
+        mount -t proc proc "$root/proc"
+        mount --rbind /dev "$root/dev"
+        mount -t tmpfs tmpfs "$root/tmp"
+        mount --bind -o ro "$source" "$root/penumbra/source"
+        mount --bind -o ro "$build" "$root/penumbra/build"
+        exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
+            chroot "$root" "$@"' sh "$1" "$source" "$build" "${@:2}"
+}
+
+check_room() {
+    local free
+    command -v debootstrap >/dev/null || fail "debootstrap is missing: apt-get install debootstrap"
+    free=$(df --output=avail -B 1M "$cache" | tail -n 1)
+    [ "$free" -ge 4000 ] || fail "$cache has $free MB left; making a root takes 4000"
+}
+
+# Chained, because `set -e` does not hold where a failure is looked at.
+make_root() {
+    local suite=$1 root=$cache/$1.partial
+    rm -rf --one-file-system "$root" &&
+        debootstrap --variant=minbase "$suite" "$root" "$(mirror)" &&
+        printf '%s\n' force-unsafe-io 'path-exclude=/usr/share/doc/*' 'path-exclude=/usr/share/locale/*' \
+            >"$root/etc/dpkg/dpkg.cfg.d/small" &&
+        printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d" &&
+        chmod +x "$root/usr/sbin/policy-rc.d" &&
+        ln -sf ../proc/self/mounts "$root/etc/mtab" &&
+        in_root "$root" apt-get -q install -y --no-install-recommends blender python3 libgl1 libegl1 libegl-mesa0 \
+            libgl1-mesa-dri xvfb xauth &&
+        in_root "$root" apt-get clean &&
+        mv "$root" "$cache/$suite"
+}
+
+# ---- Running and counting ----
+
+passed=0 failed=0 summary=
+
+run_version() {
+    local version=$1 log=$logs/matrix-$1.log status=0 start counts name
+    shift
+    if [ "$version" != system ] && [ ! -d "$cache/$version" ]; then
+        check_room
+        echo "Making the root of $version in $cache"
+        make_root "$version" >"$logs/matrix-root-$version.log" 2>&1 ||
+            fail "the root of $version could not be made; see $logs/matrix-root-$version.log"
+    fi
+    echo "---- $version"
+    start=$SECONDS
+    if [ "$version" = system ]; then
+        sh "$here/run.sh" "$build" "$@"
+    else
+        in_root "$cache/$version" sh /penumbra/source/tests/blender/run.sh /penumbra/build "$@"
+    fi 2>&1 | tee "$log" || status=1
+    counts=$(grep -Eo '^[0-9]+ passed, [0-9]+ failed$' "$log" | tail -n 1 || true)
+    # A run that ends early is a failure, whatever it counted.
+    [ -n "$counts" ] || counts="0 passed, 1 failed"
+    [ "$status" -eq 0 ] || [[ $counts != *" 0 failed" ]] || counts="${counts%0 failed}1 failed"
+    name=$(grep -E '^Blender [0-9.]+' "$log" | tail -n 1 || true)
+    summary+=$(printf '%-7s %4d s  %s; %s' "$version" $((SECONDS - start)) "$counts" "${name:-no Blender}")$'\n'
+    passed=$((passed + ${counts%% *}))
+    counts=${counts#*, }
+    failed=$((failed + ${counts%% *}))
+}
+
+for version in "${versions[@]}"; do
+    [ "$version" = system ] || [ "$(id -u)" -eq 0 ] || fail "$version runs in a root of its own, which needs root"
+done
+for version in "${versions[@]}"; do
+    run_version "$version" "$@"
+done
+echo "---- all, $SECONDS s"
+printf '%s' "$summary"
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
