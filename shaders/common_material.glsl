@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The material of one draw (gpu_scene.c).
+// The material of one draw (gpu_scene.c). SPECIAL: it has textures, holes or culled back faces.
 
 uniform vec4 base_color; // rgb, alpha
+uniform vec4 emission;   // rgb; a: 1 = holdout
 
-#ifdef TEXTURED
-uniform sampler2D base_color_texture, alpha_texture;
-uniform vec4 texture_use; // x: base_color_texture, y: alpha_texture; z: 1 = alpha is the texture's own, 0 = its grey
+#ifdef SPECIAL
+uniform sampler2D base_color_texture, alpha_texture, emission_texture;
+uniform vec4 texture_use; // x: base_color_texture, y: alpha_texture, z: 1 = alpha is the texture's own, 0 = its grey,
+                          // w: emission_texture
+uniform int cull_back;
+flat in int mirrored; // 1: the instance's matrix swaps front and back
 
 vec4 material_color(vec2 uv) {
     vec4 color = base_color;
@@ -18,8 +22,20 @@ vec4 material_color(vec2 uv) {
     }
     return color;
 }
+
+vec3 material_emission(vec2 uv) {
+    return texture_use.w != 0.0 ? emission.rgb * texture(emission_texture, uv).rgb : emission.rgb;
+}
+
+bool is_culled() {
+    return cull_back != 0 && gl_FrontFacing == (mirrored != 0);
+}
 #else
 vec4 material_color(vec2 uv) {
     return base_color;
+}
+
+vec3 material_emission(vec2 uv) {
+    return emission.rgb;
 }
 #endif

@@ -5,11 +5,14 @@
 in vec3 position;
 in vec3 normal;
 in vec2 uv;
-flat in float receives;
+flat in vec2 traits;
 
 layout(location = 0) out float out_depth;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out vec4 out_color;
+#ifdef EMISSION
+layout(location = 3) out vec4 out_emission;
+#endif
 
 // Random number of a pixel of the full image (Jarzynski and Olano 2020, PCG).
 float pixel_random(uvec2 pixel) {
@@ -20,7 +23,9 @@ float pixel_random(uvec2 pixel) {
 
 void main() {
     vec4 color = material_color(uv);
-#ifdef TRANSPARENT
+#ifdef SPECIAL
+    if (is_culled())
+        discard;
     // Stochastic transparency, stratified over the samples of the pixel; a single sample cuts at one half.
     float jitter = camera.sample_count > 1.0 ? pixel_random(uvec2(gl_FragCoord.xy)) : 0.5;
     if (color.a < fract(jitter + camera.sample_index * 0.61803399) + 1e-6)
@@ -35,7 +40,10 @@ void main() {
     if (dot(shading, geometric) < 0.0)
         shading = -shading;
     float depth = -dot(position, camera.axis_z.xyz);
-    out_depth = receives != 0.0 ? depth : -depth;
+    out_depth = traits.x != 0.0 ? depth : -depth;
     out_normal = vec4(octahedral_encode(shading), octahedral_encode(geometric));
-    out_color = vec4(min(color.rgb, vec3(65504.0)), 1.0);
+    out_color = vec4(min(color.rgb, vec3(65504.0)), 1.0 - max(traits.y, emission.a));
+#ifdef EMISSION
+    out_emission = vec4(min(material_emission(uv), vec3(65504.0)), 1.0);
+#endif
 }

@@ -2,12 +2,15 @@
 #include "common_camera.glsl"
 #include "common_instance.glsl"
 
+#ifdef SPECIAL
+flat out int mirrored;
+#endif
 uniform mat4 projection; // relative world to clip
 
 out vec3 position;
 out vec3 normal;
 out vec2 uv;
-flat out float receives;
+flat out vec2 traits;
 
 void main() {
     position = instance_position();
@@ -15,9 +18,12 @@ void main() {
     vec3 a = instance_x.xyz, b = instance_y.xyz, c = instance_z.xyz;
     vec3 n = octahedral_decode(vertex_normal);
     normal = vec3(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n));
-    if (dot(a, cross(b, c)) < 0.0)
-        normal = -normal;
+    float side = dot(a, cross(b, c)) < 0.0 ? -1.0 : 1.0;
+    normal *= side;
+#ifdef SPECIAL
+    mirrored = side < 0.0 ? 1 : 0;
+#endif
     uv = vertex_uv;
-    receives = instance_receives;
+    traits = instance_traits;
     gl_Position = projection * vec4(position, 1.0);
 }

@@ -9,6 +9,9 @@ uniform sampler2D visibility;
 #endif
 
 uniform sampler2D gbuffer_depth, gbuffer_normal, gbuffer_color;
+#ifdef EMISSION
+uniform sampler2D gbuffer_emission;
+#endif
 uniform vec4 world; // rgb; a: 0 = transparent film
 
 layout(location = 0) out vec4 out_combined;
@@ -21,7 +24,8 @@ void main() {
     vec2 coordinate = camera_pixel(gl_FragCoord.xy);
     ivec2 pixel = ivec2(coordinate); // in the G-buffer
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
-    vec3 color = texelFetch(gbuffer_color, pixel, 0).rgb;
+    vec4 surface = texelFetch(gbuffer_color, pixel, 0);
+    vec3 color = surface.rgb * surface.a;
     vec3 normal = octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).xy);
     bool covered = depth != 0.0;
     vec3 radiance = vec3(0.0), irradiance = vec3(0.0), visible = vec3(1.0);
@@ -38,7 +42,10 @@ void main() {
     out_visibility = vec4(visible, 1.0);
     out_combined = vec4(radiance, 0.0);
 #ifdef FIRST
-    out_combined += covered ? vec4(color * world.rgb, 1.0) : vec4(world.rgb * world.a, world.a);
+    out_combined += covered ? vec4(color * world.rgb, surface.a) : vec4(world.rgb * world.a, world.a);
+#ifdef EMISSION
+    out_combined.rgb += texelFetch(gbuffer_emission, pixel, 0).rgb * surface.a;
+#endif
     out_normal = covered ? vec4(normal, 1.0) : vec4(0.0);
 #endif
 }

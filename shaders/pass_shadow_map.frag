@@ -4,14 +4,14 @@
 
 uniform vec2 depth_planes; // near, far
 
-#ifdef TRANSPARENT
+#ifdef SPECIAL
 #include "common_material.glsl"
 in vec2 uv;
 #endif
 
 void main() {
-#ifdef TRANSPARENT
-    if (material_color(uv).a < 0.5)
+#ifdef SPECIAL
+    if (material_color(uv).a < 0.5 || is_culled())
         discard;
 #endif
 #ifdef PERSPECTIVE

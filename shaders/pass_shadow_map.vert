@@ -3,13 +3,15 @@
 
 uniform mat4 projection; // relative world to the map's clip space; w is the light-space depth in perspective
 
-#ifdef TRANSPARENT
+#ifdef SPECIAL
 out vec2 uv;
+flat out int mirrored;
 #endif
 
 void main() {
-#ifdef TRANSPARENT
+#ifdef SPECIAL
     uv = vertex_uv;
+    mirrored = dot(instance_x.xyz, cross(instance_y.xyz, instance_z.xyz)) < 0.0 ? 1 : 0;
 #endif
     gl_Position = projection * vec4(instance_position(), 1.0);
 }

@@ -15,6 +15,9 @@ SPOT_IS_SCALED = BLENDER_4
 # Before 4.0 Cycles takes a sun for a flat disk at distance 1, whose rim gives less than its centre.
 SUN_IS_FLAT_DISK = not BLENDER_4
 
+# Inputs of the Principled shader that were renamed.
+PRINCIPLED_EMISSION = 'Emission Color' if BLENDER_4 else 'Emission'
+
 # Panels of other engines that fit this one too.
 ADOPTED_PANELS = ('EEVEE_MATERIAL_PT_context_material', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface')
 
@@ -90,6 +93,11 @@ def light_is_normalized(light):
 def uses_nodes(owner):
     """Materials, worlds and lights: `use_nodes` is deprecated in 5.x, where it is always on."""
     return bool(owner.node_tree) and getattr(owner, 'use_nodes', True)
+
+
+def culls_backfaces(material):
+    """(for the camera, for shadows)."""
+    return material.use_backface_culling, getattr(material, 'use_backface_culling_shadow', False)
 
 
 def view_layer_overrides(view_layer):

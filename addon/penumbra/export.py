@@ -84,7 +84,8 @@ class SceneExport:
         target.mesh = mesh
         target.name = ob.name.encode()
         target.flags = ((0 if ob.visible_camera else capi.INSTANCE_HIDDEN_FROM_CAMERA)
-                        | (0 if ob.visible_shadow else capi.INSTANCE_NO_SHADOW))
+                        | (0 if ob.visible_shadow else capi.INSTANCE_NO_SHADOW)
+                        | (capi.INSTANCE_HOLDOUT if ob.is_holdout else 0))
         slots = tuple(self._material_index(slot.material) for slot in ob.material_slots)
         target.first_slot = self._first_slot(slots)
         target.slot_count = len(slots)

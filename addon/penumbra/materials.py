@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Material -> pnb_material: base colour and alpha, each a value and an image."""
+"""Material -> pnb_material: base colour, emission and alpha, each a value and an image."""
 
 from dataclasses import dataclass, field
 
-from . import compat, nodes, textures
+from . import capi, compat, nodes, textures
 
 GREY = [0.8, 0.8, 0.8]
 
@@ -12,9 +12,15 @@ GREY = [0.8, 0.8, 0.8]
 class Surface:
     color: list = field(default_factory=lambda: list(GREY))
     color_image: object = None
+    emission: list = field(default_factory=lambda: [0.0] * 3)
+    emission_image: object = None
     alpha: float = 1.0
     alpha_image: object = None
     alpha_use: str = textures.ALPHA
+    is_holdout: bool = False
+
+    def has_images(self):
+        return bool(self.color_image or self.emission_image or self.alpha_image)
 
 
 def fill_material(target, material, texture, warnings):
@@ -26,6 +32,12 @@ def fill_material(target, material, texture, warnings):
         target.base_color_texture = texture(surface.color_image, textures.COLOR)
     if surface.alpha_image:
         target.alpha_texture = texture(surface.alpha_image, surface.alpha_use)
+    target.emission[:] = surface.emission
+    if surface.emission_image:
+        target.emission_texture = texture(surface.emission_image, textures.COLOR)
+    camera, shadow = compat.culls_backfaces(material)
+    target.flags = ((capi.MATERIAL_CULL_CAMERA if camera else 0) | (capi.MATERIAL_CULL_SHADOW if shadow else 0)
+                    | (capi.MATERIAL_HOLDOUT if surface.is_holdout else 0))
 
 
 def read_surface(material, warnings):
@@ -48,8 +60,21 @@ class _Reader:
         node = source.output.node
         if node.type == 'BSDF_TRANSPARENT':
             return Surface(alpha=0.0)
+        if node.type == 'HOLDOUT':
+            return Surface(is_holdout=True)
         if node.type == 'MIX_SHADER':
             return self.mix(source)
+        if node.type == 'ADD_SHADER':
+            return self.add(source)
+        if node.type == 'EMISSION':
+            surface = Surface(color=[0.0] * 3)
+            self.emission(source, 'Color', 'Strength', surface)
+            return surface
+        return self.scattering(source)
+
+    def scattering(self, source):
+        """A surface that reflects light, by what it has in common with a diffuse one."""
+        node = source.output.node
         surface = Surface()
         color = next((name for name in ('Base Color', 'Color') if name in node.inputs), None)
         if color is None:
@@ -57,14 +82,39 @@ class _Reader:
             return surface
         if node.type not in {'BSDF_PRINCIPLED', 'BSDF_DIFFUSE'}:
             self.warn(f"a {node.name} node is drawn as a diffuse surface of its colour")
-        self.color(source.input(color), surface)
+        surface.color, surface.color_image = self.color(source.input(color), GREY)
+        if node.type == 'BSDF_PRINCIPLED':
+            self.emission(source, compat.PRINCIPLED_EMISSION, 'Emission Strength', surface)
         if 'Alpha' in node.inputs:
             self.alpha(source.input('Alpha'), surface)
         return surface
 
+    def emission(self, source, color, strength, surface):
+        factor = nodes.constant(source.input(strength), 1.0)
+        if factor is None:
+            factor = self.fallback(source.input(strength), 1.0)
+            self.warn(f"nodes linked to '{strength}' are not supported, the socket's own value counts")
+        elif isinstance(factor, list):
+            factor = sum(factor[:3]) / 3.0
+        if factor <= 0.0:
+            return
+        value, surface.emission_image = self.color(source.input(color), [1.0] * 3)
+        surface.emission = [max(channel, 0.0) * factor for channel in value]
+        if any(surface.emission):
+            self.warn("its emission is seen, but lights nothing")
+
+    def add(self, source):
+        """The sum of two shaders, of which transparency cannot be a part."""
+        first, second = self.shaders(source.output.node.inputs, source.groups)
+        if first.alpha < 1.0 or second.alpha < 1.0 or first.has_images() or second.has_images():
+            self.warn("Add Shader is supported for opaque shaders without images, of others the second is drawn")
+            return second if second.alpha > 0.0 else first
+        return Surface(color=[a + b for a, b in zip(first.color, second.color)],
+                       emission=[a + b for a, b in zip(first.emission, second.emission)])
+
     def mix(self, source):
         """Two shaders by factor: by constants, or transparency by an image."""
-        first, second = (follow for follow in self.mix_inputs(source))
+        first, second = self.shaders(source.output.node.inputs[1:], source.groups)
         factor = source.input('Fac' if 'Fac' in source.output.node.inputs else 'Factor')
         weight = nodes.constant(factor, 0.5)
         transparent = first.alpha == 0.0
@@ -76,9 +126,8 @@ class _Reader:
             weight = 0.5
         return self.blend(first, second, min(max(weight, 0.0), 1.0))
 
-    def mix_inputs(self, source):
-        for socket in source.output.node.inputs[1:]:
-            yield self.shader(nodes.follow(socket, source.groups))
+    def shaders(self, sockets, groups):
+        return [self.shader(nodes.follow(socket, groups)) for socket in sockets]
 
     def blend(self, first, second, weight):
         """Colours count by their share of the opaque part."""
@@ -86,20 +135,21 @@ class _Reader:
         share = second.alpha * weight / alpha if alpha > 0.0 else 0.5
         heavier = second if share > 0.5 else first
         if 0.0 < share < 1.0:
-            if first.color_image or second.color_image or first.alpha_image or second.alpha_image:
+            if first.has_images() or second.has_images():
                 self.warn("of two mixed shaders with images only the heavier one is drawn")
             else:
                 heavier.color = [a + (b - a) * share for a, b in zip(first.color, second.color)]
+                heavier.emission = [a + (b - a) * share for a, b in zip(first.emission, second.emission)]
         heavier.alpha = alpha
         return heavier
 
-    def color(self, source, surface):
-        value = nodes.constant(source, GREY)
+    def color(self, source, default):
+        """(linear colour, image that multiplies it or None)."""
+        value = nodes.constant(source, default)
         if value is None:
-            surface.color_image, use = self.image(source)
-            surface.color = [1.0] * 3 if surface.color_image else self.fallback(source, GREY)
-        else:
-            surface.color = value[:3] if isinstance(value, list) else [value] * 3
+            image, _use = self.image(source)
+            return ([1.0] * 3, image) if image else (self.fallback(source, default), None)
+        return (value[:3] if isinstance(value, list) else [value] * 3), None
 
     def alpha(self, source, surface):
         value = nodes.constant(source, 1.0)

@@ -29,7 +29,7 @@
 
 #define PNB_VERSION "0.1.0"
 /* Raised by every change of this header that is not a pure addition. */
-#define PNB_API_VERSION 1u
+#define PNB_API_VERSION 2u
 
 #ifdef PNB_BUILD
 #define PNB_API __attribute__((visibility("default")))
@@ -182,19 +182,30 @@ PNB_API void pnb_texture_destroy(pnb_texture **texture);
 
 /* ---- Scene ------------------------------------------------------------------------------------------------ */
 
+enum pnb_material_flags {
+    PNB_MATERIAL_CULL_CAMERA = 1, /* the camera does not see back faces */
+    PNB_MATERIAL_CULL_SHADOW = 2, /* back faces, seen from the light, cast no shadow */
+    PNB_MATERIAL_HOLDOUT = 4      /* cuts a hole into the image: 0 with alpha 0 */
+};
+
 typedef struct pnb_material {
     uint32_t struct_size;
     float base_color[3];                   /* linear, >= 0; multiplied with the texture */
     float transparency;                    /* 0..1, 1 - alpha; alpha is multiplied with the texture's alpha */
-    uint32_t reserved;
+    uint32_t flags;                        /* enum pnb_material_flags */
     const pnb_texture *base_color_texture; /* NULL: none */
     const pnb_texture *alpha_texture;      /* its alpha channel (or grey, without one) is used; NULL: none */
+    float emission[3];                     /* radiance, W/(m2 sr), linear, >= 0, multiplied with the texture: seen by the
+                                            * camera, but lights nothing */
+    uint32_t reserved;
+    const pnb_texture *emission_texture;   /* NULL: none */
 } pnb_material;
 
 enum pnb_instance_flags {
     PNB_INSTANCE_HIDDEN_FROM_CAMERA = 1, /* casts shadows only */
     PNB_INSTANCE_NO_SHADOW = 2,          /* casts no shadow */
-    PNB_INSTANCE_NO_RECEIVE = 4          /* receives no shadow */
+    PNB_INSTANCE_NO_RECEIVE = 4,         /* receives no shadow */
+    PNB_INSTANCE_HOLDOUT = 8             /* all its materials are holdouts */
 };
 
 typedef struct pnb_instance {

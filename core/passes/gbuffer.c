@@ -8,15 +8,18 @@ static void upload_camera(struct renderer *renderer, const struct camera_block *
     gl->BindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->camera_buffer);
 }
 
-static pnb_result ensure_gbuffer(struct renderer *renderer, int width, int height) {
+static pnb_result ensure_gbuffer(struct renderer *renderer, int width, int height, bool emissive) {
     const struct {
         struct gl_texture *texture;
         GLenum format;
-    } parts[] = {{&renderer->gbuffer_depth, GL_R32F},
+    } parts[] = {{&renderer->gbuffer_emission, GL_RGBA16F},
+                 {&renderer->gbuffer_depth, GL_R32F},
                  {&renderer->gbuffer_normal, GL_RGBA16_SNORM},
                  {&renderer->gbuffer_color, GL_RGBA16F},
                  {&renderer->gbuffer_z, GL_DEPTH_COMPONENT32F}};
-    for (int i = 0; i < 4; i++) {
+    if (!emissive)
+        gl_texture_free(renderer->gl, &renderer->gbuffer_emission);
+    for (int i = emissive ? 0 : 1; i < 5; i++) {
         pnb_result result =
             gl_texture_ensure(renderer->gl, parts[i].texture, parts[i].format, width, height, 0, 1);
         if (result != PNB_OK)
@@ -36,13 +39,14 @@ static void scissor_crop(const struct gl *gl, const struct settings *settings) {
 pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    pnb_result result = ensure_gbuffer(renderer, (int)frame->settings->width, (int)frame->settings->height);
+    const bool emissive = frame->scene->emissive;
+    pnb_result result = ensure_gbuffer(renderer, (int)frame->settings->width, (int)frame->settings->height, emissive);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "G-buffer")) != PNB_OK)
         return result;
     upload_camera(renderer, &frame->camera);
     const struct gl_target target = {
-        .colors = {&renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color},
-        .color_count = 3,
+        .colors = {&renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color, &renderer->gbuffer_emission},
+        .color_count = emissive ? 4 : 3,
         .depth = &renderer->gbuffer_z};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
@@ -52,7 +56,7 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     gl->DepthMask(GL_TRUE);
     gl->Disable(GL_BLEND);
     const float nothing[4] = {0, 0, 0, 0}, farthest = 1.0f;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < target.color_count; i++)
         gl->ClearBufferfv(GL_COLOR, i, nothing);
     gl->ClearBufferfv(GL_DEPTH, 0, &farthest);
 
@@ -60,9 +64,10 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     gpu_scene_depth_range(renderer->scene, &frame->camera, planes);
     mat4 clip;
     camera_projection(&frame->camera, planes[0], planes[1], clip);
-    static const struct program_desc descs[] = {
-        {.vertex = "pass_gbuffer.vert", .fragment = "pass_gbuffer.frag"},
-        {.vertex = "pass_gbuffer.vert", .fragment = "pass_gbuffer.frag", .defines = {"#define TEXTURED\n#define TRANSPARENT\n"}}};
+    const char *const emission = emissive ? "#define EMISSION\n" : NULL;
+    const struct program_desc descs[] = {
+        {.vertex = "pass_gbuffer.vert", .fragment = "pass_gbuffer.frag", .defines = {emission}},
+        {.vertex = "pass_gbuffer.vert", .fragment = "pass_gbuffer.frag", .defines = {emission, "#define SPECIAL\n"}}};
     GLuint programs[2];
     for (int i = 0; i < 2 && result == PNB_OK; i++) {
         result = program_use(&renderer->programs, &descs[i], &programs[i]);
@@ -71,9 +76,10 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     }
     if (result == PNB_OK)
         result = gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA,
-                                &(struct draw_programs){programs[0], programs[1], false});
+                                &(struct draw_programs){programs[0], programs[1], false, PNB_MATERIAL_CULL_CAMERA});
     gl->Disable(GL_SCISSOR_TEST);
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +
-                                    gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_z));
+                                    gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_emission) +
+                                    gl_texture_bytes(&renderer->gbuffer_z));
     return result;
 }

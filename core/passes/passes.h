@@ -33,6 +33,7 @@ struct renderer {
 
     /* G-buffer, of the full image's size: see common_camera.glsl for the contents. */
     struct gl_texture gbuffer_depth, gbuffer_normal, gbuffer_color, gbuffer_z;
+    struct gl_texture gbuffer_emission; /* exists only while something emits */
     struct gl_texture visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
     /* Sums over the samples, RGBA32F, W x H. */
     struct gl_texture combined, shadowed, unshadowed, normal;

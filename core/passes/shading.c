@@ -59,10 +59,11 @@ static const struct gl_texture *if_made(const struct gl_texture *texture) {
 }
 
 static pnb_result use_program(struct frame *frame, const struct frame_light *light, bool first, GLuint *program) {
+    const char *const first_define = frame->scene->emissive ? "#define FIRST\n#define EMISSION\n" : "#define FIRST\n";
     const struct program_desc desc = {
         .vertex = "pass_screen.vert",
         .fragment = "pass_shading.frag",
-        .defines = {light ? light_defines(&light->emitter, &light->views) : NULL, first ? "#define FIRST\n" : NULL}};
+        .defines = {light ? light_defines(&light->emitter, &light->views) : NULL, first ? first_define : NULL}};
     return program_use(&frame->renderer->programs, &desc, program);
 }
 
@@ -82,6 +83,8 @@ pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bo
         return result;
     begin_adding(gl, first && frame->sample == 0, share != NULL);
     bind_gbuffer(renderer, program);
+    gl_texture_bind(gl, frame->scene->emissive ? &renderer->gbuffer_emission : &renderer->gbuffer_color, 5);
+    program_set_int(gl, program, "gbuffer_emission", 5);
     gl_texture_bind(gl, &renderer->visibility, 3);
     program_set_int(gl, program, "visibility", 3);
     const float *world = frame->scene->world_color;

@@ -18,7 +18,7 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
         {.vertex = "pass_shadow_map.vert", .fragment = "pass_shadow_map.frag", .defines = {perspective}},
         {.vertex = "pass_shadow_map.vert",
          .fragment = "pass_shadow_map.frag",
-         .defines = {perspective, "#define TEXTURED\n#define TRANSPARENT\n"}}};
+         .defines = {perspective, "#define SPECIAL\n"}}};
     GLuint programs[2];
     for (int i = 0; i < 2; i++) {
         if ((result = program_use(&renderer->programs, &descs[i], &programs[i])) != PNB_OK)
@@ -27,7 +27,7 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
         program_set_vec2(gl, programs[i], "depth_planes", (const float[2]){view->near_depth, view->far_depth});
     }
     return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW,
-                          &(struct draw_programs){programs[0], programs[1], true});
+                          &(struct draw_programs){programs[0], programs[1], true, PNB_MATERIAL_CULL_SHADOW});
 }
 
 pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,

@@ -118,7 +118,7 @@ static void mesh_upload(struct gpu_cache *cache, const pnb_mesh *from, struct gp
     gl->BindBuffer(GL_ARRAY_BUFFER, cache->instance_buffer);
     for (GLuint i = 0; i < 4; i++) {
         gl->EnableVertexAttribArray(3 + i);
-        gl->VertexAttribPointer(3 + i, i < 3 ? 4 : 1, GL_FLOAT, GL_FALSE, sizeof(struct instance_block),
+        gl->VertexAttribPointer(3 + i, i < 3 ? 4 : 2, GL_FLOAT, GL_FALSE, sizeof(struct instance_block),
                                 (const void *)(uintptr_t)(4 * sizeof(float) * i));
         gl->VertexAttribDivisor(3 + i, 1);
     }

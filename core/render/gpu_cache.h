@@ -10,8 +10,8 @@
  * reads component by component. */
 struct instance_block {
     float rows[3][4]; /* object to relative world */
-    float receives;   /* 1 or 0 */
-    float padding[3];
+    float receives, holdout; /* 1 or 0 */
+    float padding[2];
 };
 
 /* What every cached object begins with. */

@@ -18,8 +18,10 @@ struct draw {
 
 struct gpu_material {
     vec4 base_color; /* rgb, alpha */
-    const struct gpu_image *base_color_texture, *alpha_texture;
+    vec4 emission;   /* rgb, 1 = holdout */
+    const struct gpu_image *base_color_texture, *alpha_texture, *emission_texture;
     bool alpha_is_grey, transparent, textured;
+    uint32_t flags;
 };
 
 struct gpu_scene {
@@ -88,16 +90,21 @@ static pnb_result load_materials(struct gpu_scene *scene, const struct scene *fr
         struct gpu_material *material = &scene->materials[i];
         glm_vec3_copy((float *)source->base_color, material->base_color);
         material->base_color[3] = source->alpha;
+        glm_vec3_copy((float *)source->emission, material->emission);
+        material->emission[3] = source->flags & PNB_MATERIAL_HOLDOUT ? 1.0f : 0.0f;
+        material->flags = source->flags;
         pnb_result result = PNB_OK;
         if (source->base_color_texture)
             result = gpu_cache_image(&scene->cache, source->base_color_texture, &material->base_color_texture);
         if (result == PNB_OK && source->alpha_texture)
             result = gpu_cache_image(&scene->cache, source->alpha_texture, &material->alpha_texture);
+        if (result == PNB_OK && source->emission_texture)
+            result = gpu_cache_image(&scene->cache, source->emission_texture, &material->emission_texture);
         if (result != PNB_OK)
             return result;
         material->alpha_is_grey = source->alpha_texture && !source->alpha_texture->has_alpha;
         material->transparent = source->alpha < 1.0f || source->alpha_texture;
-        material->textured = source->base_color_texture || source->alpha_texture;
+        material->textured = source->base_color_texture || source->alpha_texture || source->emission_texture;
     }
     return PNB_OK;
 }
@@ -148,6 +155,7 @@ static pnb_result load_instances(struct gpu_scene *scene, struct frame *frame) {
         struct instance_block *block = &scene->instances[i];
         relative_rows(instance->matrix, frame->origin, block->rows);
         block->receives = instance->flags & PNB_INSTANCE_NO_RECEIVE ? 0.0f : 1.0f;
+        block->holdout = instance->flags & PNB_INSTANCE_HOLDOUT ? 1.0f : 0.0f;
         scene->flags[i] = instance->flags;
         scene->bounds[i] = instance->mesh->index_count ? transform_box(instance->mesh->bounds, block->rows)
                                                        : (struct box){{FLT_MAX, 0, 0}, {-FLT_MAX, 0, 0}};
@@ -228,17 +236,24 @@ static bool box_is_outside(const struct box *box, const mat4 clip) {
     return outside != 0;
 }
 
-static void bind_material(const struct gl *gl, GLuint program, const struct gpu_material *material, bool textures) {
+/* special: with the program for materials that need more than a base colour. */
+static void bind_material(const struct gl *gl, GLuint program, const struct gpu_material *material, bool special,
+                          uint32_t cull) {
     program_set_vec4(gl, program, "base_color", material->base_color);
-    if (!textures)
+    program_set_vec4(gl, program, "emission", material->emission);
+    if (!special)
         return;
+    program_set_int(gl, program, "cull_back", (material->flags & cull) != 0);
     const vec4 use = {material->base_color_texture ? 1.0f : 0.0f, material->alpha_texture ? 1.0f : 0.0f,
-                      material->alpha_is_grey ? 0.0f : 1.0f, 0.0f};
+                      material->alpha_is_grey ? 0.0f : 1.0f, material->emission_texture ? 1.0f : 0.0f};
     program_set_vec4(gl, program, "texture_use", use);
     program_set_int(gl, program, "base_color_texture", 0);
     program_set_int(gl, program, "alpha_texture", 1);
-    for (int unit = 0; unit < 2; unit++) {
-        const struct gpu_image *image = unit == 0 ? material->base_color_texture : material->alpha_texture;
+    program_set_int(gl, program, "emission_texture", 2);
+    const struct gpu_image *const images[] = {material->base_color_texture, material->alpha_texture,
+                                              material->emission_texture};
+    for (int unit = 0; unit < 3; unit++) {
+        const struct gpu_image *image = images[unit];
         gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
         gl->BindTexture(GL_TEXTURE_2D, image ? image->texture : 0);
     }
@@ -272,12 +287,13 @@ pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hid
         if (instances == 0)
             continue;
         const struct gpu_material *material = &scene->materials[draw->material];
-        const bool special = material->transparent || (material->textured && !programs->alpha_matters_only);
-        const GLuint program = special ? programs->textured : programs->opaque;
+        const bool special = material->transparent || (material->flags & programs->cull) ||
+                             (material->textured && !programs->alpha_matters_only);
+        const GLuint program = special ? programs->special : programs->plain;
         if (program != current)
             gl->UseProgram(program);
         current = program;
-        bind_material(gl, program, material, special);
+        bind_material(gl, program, material, special, programs->cull);
         gl->BindVertexArray(draw->mesh->vertex_array);
         gl->DrawElementsInstancedBaseInstance(GL_TRIANGLES, (GLsizei)draw->range->index_count, GL_UNSIGNED_INT,
                                               (const void *)(uintptr_t)(draw->range->first_index * sizeof(uint32_t)),

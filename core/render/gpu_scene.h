@@ -17,10 +17,11 @@ pnb_result gpu_scene_update(struct gpu_scene *scene, struct frame *frame);
 /* Bytes of OpenGL memory it holds. */
 uint64_t gpu_scene_bytes(const struct gpu_scene *scene);
 
-/* Programs for opaque and for transparent or textured materials; uniforms of the pass are set beforehand. */
+/* Programs for materials that are one opaque colour and for all others; uniforms of the pass are set beforehand. */
 struct draw_programs {
-    GLuint opaque, textured;
-    bool alpha_matters_only; /* depth passes: `textured` only where a material is not opaque */
+    GLuint plain, special;
+    bool alpha_matters_only; /* depth passes: `special` only where a material has holes */
+    uint32_t cull;           /* the enum pnb_material_flags that hides back faces in this pass */
 };
 
 /* Draws every instance inside the view volume of `clip` (relative world to clip space) that lacks the flag

@@ -229,7 +229,7 @@ static pnb_result decode_texture_reference(struct decoder *decoder, const pnb_te
 
 static pnb_result decode_materials(struct decoder *decoder) {
     pnb_capture *capture = decoder->capture;
-    size_t smallest = fields_size(&material_fields) + 2 * sizeof(uint32_t);
+    size_t smallest = fields_size(&material_fields) + 3 * sizeof(uint32_t);
     pnb_result result = decode_elements(decoder, smallest, sizeof *capture->materials, &capture->materials);
     for (uint32_t i = 0; result == PNB_OK && i < decoder->count; i++) {
         pnb_material *material = &capture->materials[i];
@@ -238,6 +238,9 @@ static pnb_result decode_materials(struct decoder *decoder) {
         result = decode_texture_reference(decoder, &material->base_color_texture);
         if (result == PNB_OK) {
             result = decode_texture_reference(decoder, &material->alpha_texture);
+        }
+        if (result == PNB_OK) {
+            result = decode_texture_reference(decoder, &material->emission_texture);
         }
     }
     if (result == PNB_OK) {

@@ -50,6 +50,7 @@ static void encode_materials(struct encoder *encoder) {
         write_fields(encoder->writer, &material_fields, material);
         encode_texture_reference(encoder, material->base_color_texture);
         encode_texture_reference(encoder, material->alpha_texture);
+        encode_texture_reference(encoder, material->emission_texture);
     }
 }
 
@@ -114,15 +115,17 @@ static uint32_t section_count(const struct encoder *encoder, int section) {
 static bool encoder_collect(struct encoder *encoder) {
     const pnb_scene *scene = encoder->scene;
     if (!handle_map_init(&encoder->meshes, scene->instance_count) ||
-        !handle_map_init(&encoder->textures, 2 * (size_t)scene->material_count)) {
+        !handle_map_init(&encoder->textures, 3 * (size_t)scene->material_count)) {
         return false;
     }
     for (uint32_t i = 0; i < scene->instance_count; i++) {
         handle_map_add(&encoder->meshes, scene->instances[i].mesh);
     }
     for (uint32_t i = 0; i < scene->material_count; i++) {
-        const pnb_texture *const used[] = {scene->materials[i].base_color_texture, scene->materials[i].alpha_texture};
-        for (int j = 0; j < 2; j++) {
+        const pnb_material *material = &scene->materials[i];
+        const pnb_texture *const used[] = {material->base_color_texture, material->alpha_texture,
+                                           material->emission_texture};
+        for (int j = 0; j < 3; j++) {
             if (used[j]) {
                 handle_map_add(&encoder->textures, used[j]);
             }

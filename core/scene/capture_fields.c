@@ -22,6 +22,8 @@ FIELD_LIST(instance_fields);
 static const struct field material_fields_table[] = {
     FIELD(pnb_material, base_color),
     FIELD(pnb_material, transparency),
+    FIELD(pnb_material, flags),
+    FIELD(pnb_material, emission),
 };
 FIELD_LIST(material_fields);
 

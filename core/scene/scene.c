@@ -14,16 +14,23 @@
 
 static const struct scene_material default_material = {.base_color = {0.8f, 0.8f, 0.8f}, .alpha = 1};
 
+/* False: a channel was not usable and became 0. */
+static bool color_resolve(const float from[3], float to[3]) {
+    bool good = true;
+    for (int i = 0; i < 3; i++) {
+        bool usable = numbers_usable(&from[i], 1) && from[i] >= 0;
+        to[i] = usable ? from[i] : 0;
+        good = good && usable;
+    }
+    return good;
+}
+
 static void material_resolve(const pnb_material *from, uint32_t index, struct messages *messages,
                              struct scene_material *to) {
     *to = default_material;
-    bool good = true;
-    for (int i = 0; i < 3; i++) {
-        float value = from->base_color[i];
-        bool usable = numbers_usable(&value, 1) && value >= 0;
-        to->base_color[i] = usable ? value : 0;
-        good = good && usable;
-    }
+    to->flags = from->flags;
+    bool good = color_resolve(from->base_color, to->base_color);
+    good = color_resolve(from->emission, to->emission) && good;
     float transparency = from->transparency;
     bool usable = transparency >= 0 && transparency <= 1;
     to->alpha = usable ? 1 - transparency : transparency > 1 ? 0.0f : 1.0f;
@@ -38,6 +45,9 @@ static void material_resolve(const pnb_material *from, uint32_t index, struct me
     if (from->alpha_texture) {
         to->alpha_texture = texture_retain((pnb_texture *)from->alpha_texture);
     }
+    if (from->emission_texture) {
+        to->emission_texture = texture_retain((pnb_texture *)from->emission_texture);
+    }
 }
 
 static pnb_result copy_materials(const pnb_scene *from, struct messages *messages, struct scene *to) {
@@ -47,6 +57,8 @@ static pnb_result copy_materials(const pnb_scene *from, struct messages *message
     }
     for (uint32_t i = 0; i < from->material_count; i++) {
         material_resolve(&from->materials[i], i, messages, &to->materials[i]);
+        const float *emission = to->materials[i].emission;
+        to->emissive = to->emissive || emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
     }
     to->materials[from->material_count] = default_material;
     to->material_count = from->material_count + 1;
@@ -255,6 +267,7 @@ void scene_destroy(struct scene **scene) {
     for (uint32_t i = 0; i < last->material_count; i++) {
         pnb_texture_destroy(&last->materials[i].base_color_texture);
         pnb_texture_destroy(&last->materials[i].alpha_texture);
+        pnb_texture_destroy(&last->materials[i].emission_texture);
     }
     for (uint32_t i = 0; i < last->light_count; i++) {
         memory_free(last->lights[i].name);

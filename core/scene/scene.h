@@ -59,8 +59,9 @@ struct scene_instance {
 };
 
 struct scene_material {
-    float base_color[3], alpha;
-    pnb_texture *base_color_texture, *alpha_texture; /* retained, or NULL */
+    float base_color[3], alpha, emission[3];
+    uint32_t flags;
+    pnb_texture *base_color_texture, *alpha_texture, *emission_texture; /* retained, or NULL */
 };
 
 /* pnb_light with every default filled in, degenerate sizes clamped, and finite numbers; members that do not belong
@@ -94,6 +95,7 @@ struct scene {
     uint32_t instance_count, material_count, slot_count, light_count;
     struct scene_camera camera;
     float world_color[3];
+    bool emissive;                    /* some material emits */
 };
 
 /* Copies and checks. What cannot be used is dropped or clamped with a message that names it; only broken

@@ -22,7 +22,8 @@ static pnb_result check_array(const char *name, uint32_t count, const void *arra
 }
 
 static pnb_result check_instance(const pnb_instance *instance, uint32_t index) {
-    const uint32_t known = PNB_INSTANCE_HIDDEN_FROM_CAMERA | PNB_INSTANCE_NO_SHADOW | PNB_INSTANCE_NO_RECEIVE;
+    const uint32_t known = PNB_INSTANCE_HIDDEN_FROM_CAMERA | PNB_INSTANCE_NO_SHADOW | PNB_INSTANCE_NO_RECEIVE |
+                           PNB_INSTANCE_HOLDOUT;
     pnb_result result = check_size("instance", index, instance->struct_size, sizeof *instance);
     if (result != PNB_OK) {
         return result;
@@ -36,6 +37,16 @@ static pnb_result check_instance(const pnb_instance *instance, uint32_t index) {
                          instance->flags & ~known);
     }
     return PNB_OK;
+}
+
+static pnb_result check_material(const pnb_material *material, uint32_t index) {
+    const uint32_t known = PNB_MATERIAL_CULL_CAMERA | PNB_MATERIAL_CULL_SHADOW | PNB_MATERIAL_HOLDOUT;
+    pnb_result result = check_size("material", index, material->struct_size, sizeof *material);
+    if (result == PNB_OK && (material->flags & ~known)) {
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "material %" PRIu32 ": unknown flags 0x%" PRIx32, index,
+                         material->flags & ~known);
+    }
+    return result;
 }
 
 static pnb_result check_light(const pnb_light *light, uint32_t index) {
@@ -94,7 +105,7 @@ pnb_result scene_check(const pnb_scene *scene) {
         result = check_instance(&scene->instances[i], i);
     }
     for (uint32_t i = 0; result == PNB_OK && i < scene->material_count; i++) {
-        result = check_size("material", i, scene->materials[i].struct_size, sizeof *scene->materials);
+        result = check_material(&scene->materials[i], i);
     }
     for (uint32_t i = 0; result == PNB_OK && i < scene->light_count; i++) {
         result = check_light(&scene->lights[i], i);

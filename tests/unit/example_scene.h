@@ -90,6 +90,9 @@ static inline void example_materials(struct example *example) {
         material->transparency = 0.125f * (float)i;
         material->base_color_texture = i == 1 ? example->colors : NULL;
         material->alpha_texture = i == 2 ? example->mask : i == 1 ? example->colors : NULL;
+        material->flags = (uint32_t)i;
+        material->emission[i] = 0.25f * (float)i;
+        material->emission_texture = i == 1 ? example->colors : NULL;
     }
     static const uint32_t slots[4] = {0, 1, 2, 1};
     memcpy(example->slots, slots, sizeof slots);

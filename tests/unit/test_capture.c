@@ -149,10 +149,12 @@ static void everything_survives(void **state) {
         pnb_material copy = scene->materials[i];
         copy.base_color_texture = example->materials[i].base_color_texture;
         copy.alpha_texture = example->materials[i].alpha_texture;
+        copy.emission_texture = example->materials[i].emission_texture;
         assert_memory_equal(&copy, &example->materials[i], sizeof copy);
     }
     const pnb_texture *texture = scene->materials[1].base_color_texture;
     assert_ptr_equal(texture, scene->materials[1].alpha_texture);
+    assert_ptr_equal(texture, scene->materials[1].emission_texture);
     assert_null(scene->materials[0].base_color_texture);
     assert_string_equal(texture->name, "Colors");
     assert_true(content_key_equal(&texture->content, &example->colors->content));
@@ -279,10 +281,10 @@ static void foreign_files_are_refused(void **state) {
     store(fixture->path, longer, fixture->file.size + 1);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
     assert_error("it is damaged");
-    longer[4] = 2;
+    longer[4] = CAPTURE_VERSION + 1;
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
-    assert_error("format version 2");
+    assert_error("format version 3");
     memcpy(longer, "BLENDER-v304RENDH", 17);
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
@@ -379,7 +381,7 @@ static void forged_references_are_found(void **state) {
     size_t reference = materials.start + fields_size(&material_fields);
     assert_number_found(fixture, reference, 2, "texture 2 does not exist");
     assert_number_found(fixture, reference, 1, "out of order");
-    size_t last = materials.start + materials.size - sizeof(uint32_t); /* the only use of texture 1 */
+    size_t last = materials.start + materials.size - 2 * sizeof(uint32_t); /* the only use of texture 1 */
     assert_number_found(fixture, last, 0, "more than is used");
     struct section instances = find_section(&fixture->file, SECTION_INSTANCES);
     assert_number_found(fixture, instances.start, 2, "mesh 2 does not exist");

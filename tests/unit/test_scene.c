@@ -187,6 +187,7 @@ static void broken_structures_are_errors(void **state) {
     REFUSED_WITH(example->instances[1].mesh, NULL, "instance 1 'Left': its mesh is NULL");
     REFUSED_WITH(example->instances[1].flags, 0x80000000u, "instance 1 'Left': unknown flags 0x80000000");
     REFUSED_WITH(example->materials[2].struct_size, 4, "material 2");
+    REFUSED_WITH(example->materials[2].flags, 0x80000000u, "material 2: unknown flags 0x80000000");
     REFUSED_WITH(example->lights[1].struct_size, 4, "light 1");
     REFUSED_WITH(example->lights[1].type, (pnb_light_type)4, "light 1 'Bulb'");
     REFUSED_WITH(example->lights[1].type, (pnb_light_type)-1, "light 1 'Bulb'");
@@ -258,7 +259,9 @@ static void materials_are_clamped(void **state) {
     example->materials[0].transparency = 1.5f;
     example->materials[1].transparency = NAN;
     example->materials[2].transparency = -INFINITY;
+    example->materials[1].emission[2] = INFINITY;
     const struct scene *scene = create(fixture);
+    assert_true(scene->emissive && scene->materials[1].emission[2] == 0 && scene->materials[2].emission[2] == 0.5f);
     assert_true(scene->materials[0].base_color[0] == 0 && scene->materials[0].base_color[1] == 0);
     assert_true(scene->materials[0].base_color[2] == 2 && scene->materials[0].alpha == 0);
     assert_true(scene->materials[1].alpha == 1 && scene->materials[2].alpha == 1);
