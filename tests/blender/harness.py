@@ -71,6 +71,15 @@ def add_camera(location=(0, 0, 10), rotation=(0, 0, 0), **settings):
     return ob
 
 
+def add_world(color):
+    world = bpy.data.worlds.new("World")
+    world.use_nodes = True
+    background = next(node for node in world.node_tree.nodes if node.type == 'BACKGROUND')
+    background.inputs['Color'].default_value = *color, 1.0
+    bpy.context.scene.world = world
+    return world
+
+
 def read_byte_image(path):
     """(width, height, RGBA floats as stored, rows bottom-up)."""
     image = bpy.data.images.load(path, check_existing=False)
@@ -110,6 +119,8 @@ class SceneTest(unittest.TestCase):
         settings.file_format = 'OPEN_EXR_MULTILAYER'
         settings.color_depth = '32'
         settings.exr_codec = 'NONE'
+        if hasattr(settings, 'use_exr_interleave'):
+            settings.use_exr_interleave = True  # else one part per pass
         self.scene.render.filepath = output(name + '.exr')
         bpy.ops.render.render(write_still=True)
         return read_exr(output(name + '.exr'))

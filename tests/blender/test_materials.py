@@ -3,7 +3,7 @@
 
 import bpy
 
-from harness import CyclesTest, add_camera, add_cube, add_light, add_plane, white_material
+from harness import CyclesTest, add_camera, add_cube, add_light, add_plane, add_world, white_material
 
 from penumbra import compat
 
@@ -117,10 +117,7 @@ class Values(MaterialTest):
 class Holdout(MaterialTest):
     def setUp(self):
         super().setUp()
-        world = bpy.data.worlds.new("World")
-        world.use_nodes = False
-        world.color = 0.25, 0.5, 0.75
-        self.scene.world = world
+        add_world((0.25, 0.5, 0.75))
         # Without light, since the world's counts as ambient light here.
         links, (output, shader) = self.material('ShaderNodeEmission')
         links.new(shader.outputs[0], output.inputs[0])

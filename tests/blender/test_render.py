@@ -5,7 +5,8 @@ import os
 
 import bpy
 
-from harness import ADDON, SceneTest, add_camera, add_cube, add_light, add_plane, output, read_byte_image, white_material
+from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_plane, add_world, output, read_byte_image,
+                     white_material)
 
 from penumbra import engine as penumbra_engine
 
@@ -137,10 +138,7 @@ class Film(SceneTest):
         add_cube()
         add_light("Sun", 'SUN', energy=3)
         add_camera(location=(0, 0, 5))
-        world = bpy.data.worlds.new("World")
-        world.use_nodes = False
-        world.color = 0.25, 0.5, 0.75
-        self.scene.world = world
+        add_world((0.25, 0.5, 0.75))
         self.scene.render.film_transparent = transparent
         picture = self.render()
         return [[picture['ViewLayer.Combined.' + channel][2][index] for channel in 'RGBA'] for index in
