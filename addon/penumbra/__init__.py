@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, device, engine, props, textures, ui
+from . import capi, device, engine, props, report, textures, ui
 
 bl_info = {
     "name": "Penumbra",
@@ -15,7 +15,7 @@ bl_info = {
     "category": "Render",
 }
 
-_CLASSES = (engine.PenumbraEngine, engine.PENUMBRA_OT_capture)
+_CLASSES = (engine.PenumbraEngine, engine.PENUMBRA_OT_capture, report.PENUMBRA_OT_report)
 
 
 @bpy.app.handlers.persistent

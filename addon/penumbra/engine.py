@@ -3,13 +3,12 @@
 
 import os
 import re
-import sys
 import traceback
 from ctypes import byref, c_float, c_void_p
 
 import bpy
 
-from . import capi, device, export, passes, props
+from . import capi, command_line, device, export, passes, props, report
 
 # How long a wait for the library may delay a cancel, in milliseconds.
 POLL_MS = 20
@@ -53,7 +52,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
 
     def _fail(self, error):
         message = str(error)
-        if not isinstance(error, (RenderFailed, capi.Error)):
+        if not isinstance(error, (RenderFailed, capi.Error, command_line.UsageError)):
             traceback.print_exc()
             message = f"Unexpected {type(error).__name__}: {error}"
         # The report makes `blender -b` exit with an error and write no file, error_set shows in the image editor.
@@ -70,8 +69,11 @@ class PenumbraEngine(bpy.types.RenderEngine):
             for view in views:
                 if not self._render_view(depsgraph, exported, view):
                     return
-        for warning in list(dict.fromkeys(exported.warnings))[:MAX_WARNINGS]:
-            self.report({'WARNING'}, warning)
+        report.set_lines(exported.warnings)
+        for line in report.lines[:MAX_WARNINGS]:
+            self.report({'WARNING'}, line)
+        if len(report.lines) > MAX_WARNINGS:
+            self.report({'WARNING'}, f"{len(report.lines) - MAX_WARNINGS} more lines are in Render > Report")
 
     def _render_view(self, depsgraph, exported, view):
         """False if it was cancelled."""
@@ -99,6 +101,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
                 done = self._wait(job, exported.warnings)
                 if done:
                     passes.fill_layer(result.layers[0], depsgraph.view_layer, job, *settings.crop[2:])
+                    self._show_statistics(job)
             finally:
                 capi.library().destroy('job', job)
         finally:
@@ -130,17 +133,37 @@ class PenumbraEngine(bpy.types.RenderEngine):
         return True
 
 
+    def _show_statistics(self, job):
+        timings = list(_timings(job))
+        megabytes = sum(timing.bytes for timing in timings) / 2 ** 20
+        self.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
+        if 'stats' not in command_line.options():
+            return
+        print(f"Penumbra: {'pass':<28}{'times':>8}{'GPU ms':>12}{'CPU ms':>12}{'MiB':>10}")
+        for timing in timings:
+            print(f"Penumbra: {timing.name.decode():<28}{timing.count:>8}{timing.gpu_ms:>12.3f}{timing.cpu_ms:>12.3f}"
+                  f"{timing.bytes / 2 ** 20:>10.2f}", flush=True)
+
+
+def _timings(job):
+    for index in range(capi.library().job_timing_count(job)):
+        timing = capi.Timing()
+        capi.library().job_get_timing(job, index, byref(timing))
+        yield timing
+
+
 def _context():
-    return device.context(props.backend())
+    return device.context(command_line.options().get('backend') or props.backend())
 
 
 def make_settings(depsgraph, width, height):
     """pnb_settings of the scene for an image of this full size."""
     scene = depsgraph.scene_eval
     options = scene.penumbra
-    values = props.parameter_values(options)
+    technique = props.technique(options, command_line.options().get('technique'))
+    values = props.parameter_values(options, technique)
     settings = capi.Settings(
-        technique=options.technique.encode(), width=width, height=height, samples=options.samples,
+        technique=technique[0].id, width=width, height=height, samples=options.samples,
         filter_width=scene.render.filter_size, shadow_map_size=options.shadow_map_size,
         light_samples=options.light_samples, passes=passes.wanted(depsgraph.view_layer),
         flags=capi.SETTINGS_FILM_TRANSPARENT if scene.render.film_transparent else 0)
@@ -165,10 +188,7 @@ def _pixels(fraction, size):
 
 def capture_path(depsgraph):
     """Path given by `-- --penumbra-capture PATH` or PENUMBRA_CAPTURE, with `#` as frame number; None without."""
-    arguments = sys.argv[sys.argv.index('--') + 1:] if '--' in sys.argv else []
-    path = os.environ.get('PENUMBRA_CAPTURE')
-    if '--penumbra-capture' in arguments[:-1]:
-        path = arguments[arguments.index('--penumbra-capture') + 1]
+    path = command_line.options().get('capture') or os.environ.get('PENUMBRA_CAPTURE')
     if not path:
         return None
     scene = depsgraph.scene

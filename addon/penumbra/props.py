@@ -8,6 +8,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 from bpy.types import AddonPreferences, PropertyGroup
 
 from . import capi
+from .command_line import UsageError
 
 DEFAULT_TECHNIQUE = 'PCSS'
 
@@ -90,14 +91,18 @@ def _scene_class(table, technique_classes):
     return type('PenumbraSceneSettings', (PropertyGroup,), {'__annotations__': annotations})
 
 
-def technique(settings):
-    """(TechniqueInfo, [ParameterInfo]) of the chosen technique."""
-    return next(row for row in capi.library().techniques() if row[0].id.decode() == settings.technique)
+def technique(settings, identifier=None):
+    """(TechniqueInfo, [ParameterInfo]) of the technique so named, else of the chosen one."""
+    table = {row[0].id.decode(): row for row in capi.library().techniques()}
+    found = table.get((identifier or settings.technique).upper())
+    if found is None:
+        raise UsageError(f"there is no technique {identifier}; there are: {', '.join(table)}")
+    return found
 
 
-def parameter_values(settings):
-    """[(name, number)] of the chosen technique's parameters."""
-    info, parameters = technique(settings)
+def parameter_values(settings, row):
+    """[(name, number)] of a technique's parameters."""
+    info, parameters = row
     group = getattr(settings, info.id.decode().lower())
     return [(parameter.name.decode(), _number(group, parameter)) for parameter in parameters]
 

@@ -6,7 +6,7 @@ import textwrap
 import bpy
 from bpy.types import Panel
 
-from . import compat, props
+from . import compat, props, report
 
 ENGINE = 'PENUMBRA'
 
@@ -80,6 +80,17 @@ class PENUMBRA_PT_film(_EnginePanel, Panel):
         column.prop(context.scene.render, 'film_transparent', text="Transparent")
 
 
+class PENUMBRA_PT_report(_EnginePanel, Panel):
+    bl_label = "Report"
+    bl_context = 'render'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        self.layout.operator(report.PENUMBRA_OT_report.bl_idname)
+        for line in report.lines:
+            _paragraph(self.layout, line, context)
+
+
 class PENUMBRA_PT_passes(_EnginePanel, Panel):
     bl_label = "Passes"
     bl_context = 'view_layer'
@@ -130,8 +141,8 @@ class PENUMBRA_PT_object_visibility(_EnginePanel, Panel):
         column.prop(context.object, 'visible_shadow', text="Shadow")
 
 
-CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_film, PENUMBRA_PT_passes, PENUMBRA_PT_light,
-           PENUMBRA_PT_object_visibility)
+CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_film, PENUMBRA_PT_report, PENUMBRA_PT_passes,
+           PENUMBRA_PT_light, PENUMBRA_PT_object_visibility)
 
 
 def _adopted():

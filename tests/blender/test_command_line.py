@@ -3,12 +3,16 @@
 
 import glob
 import os
+import re
 import signal
 import subprocess
+from ctypes import byref, c_void_p
 
 import bpy
 
 from harness import SceneTest, blender_command, output, run_blender
+
+from penumbra import capi, report
 
 
 class CommandLine(SceneTest):
@@ -71,6 +75,48 @@ class CommandLine(SceneTest):
     def test_capture_that_cannot_be_written(self):
         self.assert_fails(*self.blender(self.save(), '-f', '1', PENUMBRA_CAPTURE=output("no/such/folder/x.pnb")),
                           "no/such/folder")
+
+    def test_technique(self):
+        code, log = self.blender(self.save(), '-f', '1', '--', '--penumbra-technique', 'pcf', '--penumbra-capture',
+                                 output("cli_x.pnb"))
+        self.assertEqual(code, 0, log)
+        handle = c_void_p()
+        capi.library().capture_read(output("cli_x.pnb").encode(), byref(handle))
+        self.assertEqual(capi.library().capture_settings(handle).contents.technique, b'PCF')
+        capi.library().destroy('capture', handle)
+
+    def test_statistics(self):
+        code, log = self.blender(self.save(), '-f', '1', '--', '--penumbra-stats')
+        self.assertEqual(code, 0, log)
+        for name in ("G-buffer", "Shadow map", "Visibility", "Shading"):
+            self.assertRegex(log, f"Penumbra: {name} +[0-9]+ +[0-9.]+ +[0-9.]+ +[0-9.]+\n")
+        _code, log = self.blender(self.save(), '-f', '1')
+        self.assertNotIn("Penumbra: G-buffer", log)
+
+    def test_wrong_options(self):
+        blend = self.save()
+        for options, words in ((('--penumbra-technique', 'VSMM'), ("VSMM", "PCSS")),
+                               (('--penumbra-backend', 'egl:99'), ("egl:99",)),
+                               (('--penumbra-stat',), ("--penumbra-stats",)),
+                               (('--penumbra-technique',), ("needs a value",))):
+            with self.subTest(options=options):
+                self.assert_fails(*self.blender(blend, '-f', '1', '--', *options), *words)
+
+    def test_report(self):
+        """What is approximated is told on the console, once, by name."""
+        glossy = bpy.data.materials.new("Chromé")
+        glossy.use_nodes = True
+        tree = glossy.node_tree
+        surface = next(node for node in tree.nodes if node.type == 'OUTPUT_MATERIAL')
+        tree.links.new(tree.nodes.new('ShaderNodeBsdfGlossy').outputs[0], surface.inputs['Surface'])
+        for name in ("Cube", "Floor"):
+            bpy.data.objects[name].data.materials[0] = glossy
+        code, log = self.blender(self.save(), '-f', '1')
+        self.assertEqual(code, 0, log)
+        self.assertEqual(len(re.findall("material 'Chromé': .*diffuse", log)), 1, log)
+        self.assertEqual(bpy.ops.penumbra.report(), {'FINISHED'})
+        self.assertEqual([line for line in report.lines if "Chromé" in line], report.lines)
+        self.assertEqual(len(report.lines), 1)
 
     def test_cancel(self):
         """An interrupt (Esc in the window) ends a render that would take hours."""
