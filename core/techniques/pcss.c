@@ -26,7 +26,7 @@ static const struct parameter parameters[] = {
                          .type = PNB_INT,
                          .minimum = 1,
                          .maximum = MAX_TAPS,
-                         .default_value = 24},
+                         .default_value = 32},
     [FILTER_SAMPLES] = {.name = "filter_samples",
                         .label = "Filter Samples",
                         .description = "Points of the penumbra filter; each is one shade of grey (papers: 15 x 15 = 225). "
@@ -35,7 +35,7 @@ static const struct parameter parameters[] = {
                         .type = PNB_INT,
                         .minimum = 1,
                         .maximum = MAX_TAPS,
-                        .default_value = 48},
+                        .default_value = 64},
     [BLOCKER_AVERAGE] = {.name = "blocker_average",
                          .label = "Blocker Average",
                          .description = "AREA: a blocker counts by the share of the light it hides. EQUAL: all count the "
