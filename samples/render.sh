@@ -11,7 +11,7 @@ renders a sample scene through Blender without a display, and prints where the p
   --scene NAME        one of $scenes (default: still_life)
   --technique ID      HARD, PCF, PCSS, REFERENCE, ... (default: PCSS)
   --size WxH          pixels (default: 1280x720)
-  --samples N         anti-aliasing samples per pixel (default: 16)
+  --samples N         anti-aliasing samples per pixel (default: 8)
   --output FILE.png   (default: build/samples/NAME-ID.png)
   --help
 EOF
@@ -25,7 +25,7 @@ fail() {
 root=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 build=${PENUMBRA_BUILD:-$root/build}
 scenes=$(sed -n 's/^SCENES = (\(.*\))$/\1/p' "$root/samples/scenes/build.py" | tr -d '",')
-scene=still_life technique=PCSS size=1280x720 samples=16 output=
+scene=still_life technique=PCSS size=1280x720 samples=8 output=
 while [ $# -gt 0 ]; do
     case $1 in
     --help) help; exit 0 ;;
