@@ -200,7 +200,7 @@ static void bad_instances(void) {
     ROW(PNB_OK, "", for (int i = 0; i < ROOM_MESHES; ++i) room.instances[i].flags = 1);
     ROW(PNB_OK, "", for (int i = 0; i < ROOM_MESHES; ++i) room.instances[i].flags = 2);
     ROW(PNB_OK, "", for (int i = 0; i < ROOM_MESHES; ++i) room.instances[i].flags = 7);
-    ROW(INVALID, "instance 1", instance->flags = 8);
+    ROW(INVALID, "instance 1", instance->flags = 1u << 31);
     ROW(INVALID, "instance 1", instance->struct_size = 0);
     ROW(INVALID, "instance 1", instance->struct_size += 8);
     ROW(INVALID, "instances", room.scene.instances = NULL);
@@ -252,7 +252,7 @@ static void bad_lights(void) {
     ROW(INVALID, "light 1 'Point'", room.lights[1].type = (pnb_light_type)4);
     ROW(INVALID, "light 1 'Point'", room.lights[1].type = (pnb_light_type)-1);
     ROW(INVALID, "light 0 'Area'", room.lights[0].shape = (pnb_area_shape)2);
-    ROW(INVALID, "light 3 'Sun'", room.lights[3].flags = 4);
+    ROW(INVALID, "light 3 'Sun'", room.lights[3].flags = 1u << 31);
     ROW(PNB_OK, "", LAMPS(light->name = NULL); room.scene.light_count = 1);
     ROW(PNB_OK, "light 'Spot': dropped", LAMPS(light->matrix[0] = NAN));
     ROW(PNB_OK, "light 'Sun': dropped", LAMPS(light->matrix[13] = INFINITY));
@@ -432,7 +432,7 @@ static void bad_settings(void) {
     ROW(PNB_OK, "", settings->technique = "REFERENCE"; settings->light_samples = 64;
         settings->width = settings->height = 2; room.scene.light_count = 1; settings->shadow_map_size = 16);
     ROW(INVALID, "passes", settings->passes = 32);
-    ROW(INVALID, "flags", settings->flags = 2);
+    ROW(INVALID, "flags", settings->flags = 1u << 31);
     ROW(PNB_OK, "", settings->flags = PNB_SETTINGS_FILM_TRANSPARENT);
     ROW(PNB_OK, "", settings->passes = 0);
     ROW(PNB_OK, "", settings->passes = PNB_PASS_LIGHT_SHADOWS);
