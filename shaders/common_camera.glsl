@@ -13,7 +13,7 @@ layout(std140, binding = 0) uniform camera_block {
 
 // gbuffer_depth: metres along the camera axis, negative = receives no shadow, 0 = background.
 // gbuffer_normal: octahedral shading normal (xy) and geometric normal (zw); both face the camera.
-// gbuffer_color: base colour; a: 0 = holdout.
+// gbuffer_color: base colour; a: 0 = holdout, 0.5 = shadow catcher.
 // gbuffer_emission: emitted radiance.
 
 vec2 octahedral_encode(vec3 n) {

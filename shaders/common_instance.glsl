@@ -7,7 +7,7 @@ layout(location = 2) in vec2 vertex_uv;
 layout(location = 3) in vec4 instance_x;    // rows of object to relative world
 layout(location = 4) in vec4 instance_y;
 layout(location = 5) in vec4 instance_z;
-layout(location = 6) in vec2 instance_traits; // x: 1 = receives shadows; y: 1 = holdout
+layout(location = 6) in vec2 instance_traits; // x: 1 = receives shadows; y: 1 = holdout, 0.5 = shadow catcher
 
 vec3 instance_position() {
     vec4 p = vec4(vertex_position, 1.0);

@@ -4,6 +4,10 @@
 
 layout(local_size_x = 16, local_size_y = 4) in;
 uniform sampler2D source, divisor; // divisor: SHADOW only
+#ifdef CATCHER
+uniform sampler2D caught, uncaught;
+uniform vec4 world;                // rgb; a: 0 = transparent film
+#endif
 uniform ivec2 band;                // first row and number of rows
 uniform ivec2 corner;              // of the crop in the source
 uniform int width;                 // of the crop
@@ -20,6 +24,14 @@ void main() {
     vec4 sum = texelFetch(source, corner + ivec2(pixel.x, pixel.y + band.x), 0);
 #if defined(COMBINED)
     sum *= sample_weight;
+#ifdef CATCHER
+    // The background as dark as the shadow on the catcher, or the shadow's alpha.
+    vec4 with = texelFetch(caught, ivec2(pixel.x, pixel.y + band.x), 0);
+    vec3 without = texelFetch(uncaught, ivec2(pixel.x, pixel.y + band.x), 0).rgb;
+    vec3 light = mix(vec3(1.0), with.rgb / max(without, vec3(1e-30)), greaterThan(without, vec3(0.0)));
+    float coverage = with.a * sample_weight;
+    sum += coverage * (world.a != 0.0 ? vec4(world.rgb * light, 1.0) : vec4(vec3(0.0), 1.0 - dot(light, vec3(1.0 / 3.0))));
+#endif
     pixels[4 * index] = sum.r;
     pixels[4 * index + 1] = sum.g;
     pixels[4 * index + 2] = sum.b;

@@ -19,13 +19,17 @@ layout(location = 1) out vec4 out_shadowed;   // irradiance
 layout(location = 2) out vec4 out_unshadowed; // irradiance
 layout(location = 3) out vec4 out_normal;
 layout(location = 4) out vec4 out_visibility; // of this light
+layout(location = 5) out vec4 out_caught;     // irradiance of a shadow catcher; a: its coverage
+layout(location = 6) out vec4 out_uncaught;   // irradiance
 
 void main() {
     vec2 coordinate = camera_pixel(gl_FragCoord.xy);
     ivec2 pixel = ivec2(coordinate); // in the G-buffer
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
     vec4 surface = texelFetch(gbuffer_color, pixel, 0);
-    vec3 color = surface.rgb * surface.a;
+    float seen = surface.a == 1.0 ? 1.0 : 0.0; // neither holdout nor shadow catcher
+    float catcher = surface.a == 0.5 ? 1.0 : 0.0;
+    vec3 color = surface.rgb * seen;
     vec3 normal = octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).xy);
     bool covered = depth != 0.0;
     vec3 radiance = vec3(0.0), irradiance = vec3(0.0), visible = vec3(1.0);
@@ -41,11 +45,16 @@ void main() {
     out_unshadowed = vec4(irradiance, 0.0);
     out_visibility = vec4(visible, 1.0);
     out_combined = vec4(radiance, 0.0);
+    out_caught = vec4(irradiance * visible * catcher, 0.0);
+    out_uncaught = vec4(irradiance * catcher, 0.0);
 #ifdef FIRST
-    out_combined += covered ? vec4(color * world.rgb, surface.a) : vec4(world.rgb * world.a, world.a);
+    out_combined += covered ? vec4(color * world.rgb, seen) : vec4(world.rgb * world.a, world.a);
 #ifdef EMISSION
-    out_combined.rgb += texelFetch(gbuffer_emission, pixel, 0).rgb * surface.a;
+    out_combined.rgb += texelFetch(gbuffer_emission, pixel, 0).rgb * seen;
 #endif
+    const float pi = 3.14159265; // of ambient irradiance over radiance
+    out_caught += catcher * vec4(pi * world.rgb, 1.0);
+    out_uncaught += catcher * vec4(pi * world.rgb, 1.0);
     out_normal = covered ? vec4(normal, 1.0) : vec4(0.0);
 #endif
 }

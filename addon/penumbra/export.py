@@ -24,6 +24,7 @@ class SceneExport:
         self._materials = {}        # address: index; None: no material
         self._slots = {}            # tuple of material indices: first slot
         self._material_list, self._slot_list, self._lights = [], [], []
+        self._view_layer = depsgraph.view_layer
         override, world = compat.view_layer_overrides(depsgraph.view_layer_eval)
         self._override = override
         try:
@@ -83,12 +84,20 @@ class SceneExport:
         target.struct_size = ctypes.sizeof(capi.Instance)
         target.mesh = mesh
         target.name = ob.name.encode()
-        target.flags = ((0 if ob.visible_camera else capi.INSTANCE_HIDDEN_FROM_CAMERA)
-                        | (0 if ob.visible_shadow else capi.INSTANCE_NO_SHADOW)
-                        | (capi.INSTANCE_HOLDOUT if ob.is_holdout else 0))
+        target.flags = self._flags(ob)
         slots = tuple(self._material_index(slot.material) for slot in ob.material_slots)
         target.first_slot = self._first_slot(slots)
         target.slot_count = len(slots)
+
+    def _flags(self, ob):
+        """Of the object, and of its collections in this view layer."""
+        original = ob.original
+        is_seen = ob.visible_camera and not original.indirect_only_get(view_layer=self._view_layer)
+        is_holdout = ob.is_holdout or original.holdout_get(view_layer=self._view_layer)
+        return ((0 if is_seen else capi.INSTANCE_HIDDEN_FROM_CAMERA)
+                | (0 if ob.visible_shadow else capi.INSTANCE_NO_SHADOW)
+                | (capi.INSTANCE_HOLDOUT if is_holdout else 0)
+                | (capi.INSTANCE_SHADOW_CATCHER if ob.is_shadow_catcher else 0))
 
     def _add_light(self, ob, matrix):
         if not ob.visible_diffuse:

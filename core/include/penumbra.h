@@ -205,7 +205,9 @@ enum pnb_instance_flags {
     PNB_INSTANCE_HIDDEN_FROM_CAMERA = 1, /* casts shadows only */
     PNB_INSTANCE_NO_SHADOW = 2,          /* casts no shadow */
     PNB_INSTANCE_NO_RECEIVE = 4,         /* receives no shadow */
-    PNB_INSTANCE_HOLDOUT = 8             /* all its materials are holdouts */
+    PNB_INSTANCE_HOLDOUT = 8,            /* all its materials are holdouts */
+    PNB_INSTANCE_SHADOW_CATCHER = 16     /* shows nothing but the shadows on it: the background darkened by them, or on
+                                          * a transparent film black with their alpha; casts shadows as ever */
 };
 
 typedef struct pnb_instance {

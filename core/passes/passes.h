@@ -37,6 +37,8 @@ struct renderer {
     struct gl_texture visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
     /* Sums over the samples, RGBA32F, W x H. */
     struct gl_texture combined, shadowed, unshadowed, normal;
+    /* Of the shadow catchers alone, if there are any: irradiance with the ambient light's; caught.a = coverage. */
+    struct gl_texture caught, uncaught;
     struct gl_texture light_shadows[MAX_LIGHTS];
 };
 
@@ -58,6 +60,8 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
 const char *light_defines(const struct emitter *emitter, const struct light_views *views);
 /* Binds gbuffer_depth, _normal and _color as the current program's samplers. */
 void bind_gbuffer(struct renderer *renderer, GLuint program);
+/* Sets the current program's `world`: background and ambient radiance; a: 0 = transparent film. */
+void set_world(struct frame *frame, GLuint program);
 /* shading.c: makes the sums; adds to them one light's radiance and irradiance, and with the first one of a sample what
  * needs no light: background, ambient light and normal. light NULL: nothing but that. */
 pnb_result pass_prepare_sums(struct frame *frame);

@@ -44,6 +44,15 @@ static pnb_result resolve_band(struct frame *frame, GLuint program, int channels
     return gl_check(gl, "read-back");
 }
 
+static void set_catcher(struct frame *frame, GLuint program) {
+    const struct gl *gl = frame->gl;
+    gl_texture_bind(gl, &frame->renderer->caught, 2);
+    gl_texture_bind(gl, &frame->renderer->uncaught, 3);
+    program_set_int(gl, program, "caught", 2);
+    program_set_int(gl, program, "uncaught", 3);
+    set_world(frame, program);
+}
+
 /* From the sums, or the G-buffer for depth, to the host's image, if it is wanted. */
 static pnb_result resolve_image(struct frame *frame, int index, const struct gl_texture *source,
                                 const struct gl_texture *divisor) {
@@ -53,7 +62,8 @@ static pnb_result resolve_image(struct frame *frame, int index, const struct gl_
         return PNB_OK;
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const struct program_desc desc = {.compute = "pass_resolve.comp", .defines = {kind->define}};
+    const bool catches = index == IMAGE_COMBINED && frame->scene->catches_shadows;
+    const struct program_desc desc = {.compute = "pass_resolve.comp", .defines = {kind->define, catches ? "#define CATCHER\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Resolve and read-back")) != PNB_OK)
@@ -62,6 +72,8 @@ static pnb_result resolve_image(struct frame *frame, int index, const struct gl_
     gl_texture_bind(gl, divisor ? divisor : source, 1);
     program_set_int(gl, program, "source", 0);
     program_set_int(gl, program, "divisor", 1);
+    if (catches)
+        set_catcher(frame, program);
     const bool whole = source->width != frame->width || source->height != frame->height; /* the G-buffer, not a sum */
     const int corner[2] = {whole ? (int)frame->settings->crop[0] : 0, whole ? (int)frame->settings->crop[1] : 0};
     gl->Uniform2iv(gl->GetUniformLocation(program, "corner"), 1, corner);

@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "passes.h"
 
+/* Attachment of the light's own share. */
+#define SHARE 4
+
 static uint64_t sums_bytes(const struct renderer *renderer) {
     return gl_texture_bytes(&renderer->combined) + gl_texture_bytes(&renderer->shadowed) +
-           gl_texture_bytes(&renderer->unshadowed) + gl_texture_bytes(&renderer->normal);
+           gl_texture_bytes(&renderer->unshadowed) + gl_texture_bytes(&renderer->normal) +
+           gl_texture_bytes(&renderer->caught) + gl_texture_bytes(&renderer->uncaught);
 }
 
 static pnb_result ensure_sum(struct frame *frame, struct gl_texture *texture, bool wanted) {
@@ -29,7 +33,9 @@ pnb_result pass_prepare_sums(struct frame *frame) {
     if ((result = ensure_sum(frame, &renderer->combined, true)) != PNB_OK ||
         (result = ensure_sum(frame, &renderer->shadowed, passes & PNB_PASS_SHADOW)) != PNB_OK ||
         (result = ensure_sum(frame, &renderer->unshadowed, passes & PNB_PASS_SHADOW)) != PNB_OK ||
-        (result = ensure_sum(frame, &renderer->normal, passes & PNB_PASS_NORMAL)) != PNB_OK)
+        (result = ensure_sum(frame, &renderer->normal, passes & PNB_PASS_NORMAL)) != PNB_OK ||
+        (result = ensure_sum(frame, &renderer->caught, frame->scene->catches_shadows)) != PNB_OK ||
+        (result = ensure_sum(frame, &renderer->uncaught, frame->scene->catches_shadows)) != PNB_OK)
         return result;
     for (uint32_t i = 0; i < MAX_LIGHTS && result == PNB_OK; i++) {
         const bool wanted = i < frame->scene->light_count && (passes & PNB_PASS_LIGHT_SHADOWS);
@@ -48,8 +54,9 @@ static void begin_adding(const struct gl *gl, bool replace, bool with_share) {
         gl->Disable(GL_BLEND);
         return;
     }
-    for (int i = 0; i < 4 && replace; i++)
-        gl->ClearBufferfv(GL_COLOR, i, (const float[4]){0, 0, 0, 0});
+    for (int i = 0; i < MAX_ATTACHMENTS && replace; i++)
+        if (i != SHARE)
+            gl->ClearBufferfv(GL_COLOR, i, (const float[4]){0, 0, 0, 0});
     gl->Enable(GL_BLEND);
     gl->BlendFunc(GL_ONE, GL_ONE);
 }
@@ -67,6 +74,13 @@ static pnb_result use_program(struct frame *frame, const struct frame_light *lig
     return program_use(&frame->renderer->programs, &desc, program);
 }
 
+void set_world(struct frame *frame, GLuint program) {
+    const float *world = frame->scene->world_color;
+    const bool transparent = frame->settings->flags & PNB_SETTINGS_FILM_TRANSPARENT;
+    const float value[4] = {world[0], world[1], world[2], transparent ? 0.0f : 1.0f};
+    program_set_vec4(frame->gl, program, "world", value);
+}
+
 pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bool first) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
@@ -77,8 +91,9 @@ pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bo
     const struct gl_texture *share = light ? if_made(&renderer->light_shadows[light - frame->lights]) : NULL;
     const struct gl_target target = {.colors = {&renderer->combined, if_made(&renderer->shadowed),
                                                 if_made(&renderer->unshadowed),
-                                                first ? if_made(&renderer->normal) : NULL, share},
-                                     .color_count = 5};
+                                                first ? if_made(&renderer->normal) : NULL, share,
+                                                if_made(&renderer->caught), if_made(&renderer->uncaught)},
+                                     .color_count = 7};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
     begin_adding(gl, first && frame->sample == 0, share != NULL);
@@ -87,9 +102,7 @@ pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bo
     program_set_int(gl, program, "gbuffer_emission", 5);
     gl_texture_bind(gl, &renderer->visibility, 3);
     program_set_int(gl, program, "visibility", 3);
-    const float *world = frame->scene->world_color;
-    const bool transparent = frame->settings->flags & PNB_SETTINGS_FILM_TRANSPARENT;
-    program_set_vec4(gl, program, "world", (const float[4]){world[0], world[1], world[2], transparent ? 0.0f : 1.0f});
+    set_world(frame, program);
     draw_screen(renderer);
     timer_end(&renderer->timer, sums_bytes(renderer) + (share ? gl_texture_bytes(share) : 0));
     return gl_check(gl, "shading");

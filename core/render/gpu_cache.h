@@ -10,7 +10,8 @@
  * reads component by component. */
 struct instance_block {
     float rows[3][4]; /* object to relative world */
-    float receives, holdout; /* 1 or 0 */
+    float receives;          /* 1 or 0 */
+    float hidden;            /* 1 = holdout, 0.5 = shadow catcher */
     float padding[2];
 };
 

@@ -155,7 +155,9 @@ static pnb_result load_instances(struct gpu_scene *scene, struct frame *frame) {
         struct instance_block *block = &scene->instances[i];
         relative_rows(instance->matrix, frame->origin, block->rows);
         block->receives = instance->flags & PNB_INSTANCE_NO_RECEIVE ? 0.0f : 1.0f;
-        block->holdout = instance->flags & PNB_INSTANCE_HOLDOUT ? 1.0f : 0.0f;
+        block->hidden = instance->flags & PNB_INSTANCE_HOLDOUT          ? 1.0f
+                        : instance->flags & PNB_INSTANCE_SHADOW_CATCHER ? 0.5f
+                                                                        : 0.0f;
         scene->flags[i] = instance->flags;
         scene->bounds[i] = instance->mesh->index_count ? transform_box(instance->mesh->bounds, block->rows)
                                                        : (struct box){{FLT_MAX, 0, 0}, {-FLT_MAX, 0, 0}};

@@ -48,7 +48,7 @@ void renderer_destroy(struct renderer **out) {
     struct gl_texture *const textures[] = {
         &renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color, &renderer->gbuffer_z,
         &renderer->visibility,    &renderer->combined,       &renderer->shadowed,      &renderer->unshadowed,
-        &renderer->normal,        &renderer->gbuffer_emission};
+        &renderer->normal,        &renderer->gbuffer_emission, &renderer->caught, &renderer->uncaught};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         gl_texture_free(gl, textures[i]);
     for (int i = 0; i < MAX_LIGHTS; i++)

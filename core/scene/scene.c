@@ -141,6 +141,7 @@ static pnb_result copy_instance(const pnb_instance *from, uint32_t slot_count, s
     scene->instance_count++;
     to->mesh = mesh_retain(mesh);
     to->flags = from->flags;
+    scene->catches_shadows = scene->catches_shadows || (from->flags & PNB_INSTANCE_SHADOW_CATCHER);
     memcpy(to->matrix, from->matrix, sizeof to->matrix);
     matrix_make_affine(to->matrix);
     instance_resolve_slots(from, slot_count, messages, to);

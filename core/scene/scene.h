@@ -96,6 +96,7 @@ struct scene {
     struct scene_camera camera;
     float world_color[3];
     bool emissive;                    /* some material emits */
+    bool catches_shadows;             /* some instance is a shadow catcher */
 };
 
 /* Copies and checks. What cannot be used is dropped or clamped with a message that names it; only broken

@@ -23,7 +23,7 @@ static pnb_result check_array(const char *name, uint32_t count, const void *arra
 
 static pnb_result check_instance(const pnb_instance *instance, uint32_t index) {
     const uint32_t known = PNB_INSTANCE_HIDDEN_FROM_CAMERA | PNB_INSTANCE_NO_SHADOW | PNB_INSTANCE_NO_RECEIVE |
-                           PNB_INSTANCE_HOLDOUT;
+                           PNB_INSTANCE_HOLDOUT | PNB_INSTANCE_SHADOW_CATCHER;
     pnb_result result = check_size("instance", index, instance->struct_size, sizeof *instance);
     if (result != PNB_OK) {
         return result;
