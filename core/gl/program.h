@@ -9,7 +9,7 @@
 struct program_desc {
     const char *vertex, *fragment, *compute; /* file names; either compute or the other two */
     const char *technique;                   /* file for `#include "technique"`, or NULL */
-    const char *defines[2];                  /* lines put after #version, or NULL */
+    const char *defines[3];                  /* lines put after #version, or NULL */
 };
 
 /* Programs made so far. All strings of a program_desc must be static: they are the key. */

@@ -58,6 +58,10 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
 /* #define lines for the shaders of a pass over one light: its type, outline and number of views as constants, since a
  * software renderer executes both sides of every branch. Static string. */
 const char *light_defines(const struct emitter *emitter, const struct light_views *views);
+/* What the technique's row defines for its shader; NULL: nothing. */
+const char *technique_defines(const struct settings *settings);
+/* Sets the technique's parameters as uniforms `p_<name>` of the current program. */
+void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings);
 /* Binds gbuffer_depth, _normal and _color as the current program's samplers. */
 void bind_gbuffer(struct renderer *renderer, GLuint program);
 /* Sets the current program's `world`: background and ambient radiance; a: 0 = transparent film. */

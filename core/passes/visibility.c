@@ -54,7 +54,11 @@ const char *light_defines(const struct emitter *emitter, const struct light_view
     return (views->single ? single : faces)[emitter->type][emitter->ellipse];
 }
 
-static void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings) {
+const char *technique_defines(const struct settings *settings) {
+    return settings->technique->defines ? settings->technique->defines(settings->parameters) : NULL;
+}
+
+void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings) {
     for (int i = 0; settings->technique->parameters[i].name; i++) {
         const struct parameter *parameter = &settings->technique->parameters[i];
         char name[64];
@@ -84,7 +88,8 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light)
     const struct program_desc desc = {.vertex = "pass_screen.vert",
                                       .fragment = "pass_visibility.frag",
                                       .technique = frame->settings->technique->shader,
-                                      .defines = {light_defines(&light->emitter, &light->views)}};
+                                      .defines = {light_defines(&light->emitter, &light->views),
+                                                  technique_defines(frame->settings)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
@@ -105,6 +110,8 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light)
     }
     program_set_int(gl, program, "shadow_map", 3);
     program_set_int(gl, program, "min_max", 4);
+    if (frame->settings->technique->bind)
+        frame->settings->technique->bind(frame, light, program, 5);
     draw_screen(renderer);
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
     return gl_check(gl, "visibility");

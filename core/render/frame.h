@@ -19,11 +19,15 @@ struct camera_block {
     float perspective, sample_index, sample_count, padding;
 };
 
+/* Textures a technique may make of one light's shadow map. */
+#define MAX_PREFILTERED 3
+
 struct frame_light {
     const struct scene_light *source;
     struct emitter emitter;
     struct light_views views;
     struct gl_texture shadow_map, min_max; /* a layer per view; kept over the samples of a pixel */
+    struct gl_texture prefiltered[MAX_PREFILTERED]; /* the same, of the technique's own making */
 };
 
 /* Images of a job; those of the lights follow one another. */

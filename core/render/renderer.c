@@ -85,7 +85,7 @@ static void fit_lights(struct frame *frame) {
 
 static uint64_t light_bytes(const struct frame *frame, const struct frame_light *light) {
     const uint64_t side = frame->settings->shadow_map_size;
-    return side * side * 4 * 2 * (uint64_t)light->views.count;
+    return side * side * (4 * 2 + frame->settings->technique->prefilter_bytes) * (uint64_t)light->views.count;
 }
 
 static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *light) {
@@ -94,12 +94,16 @@ static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *ligh
     pnb_result result = pass_shadow_map(frame, &light->views, &light->shadow_map);
     if (result == PNB_OK && (frame->settings->technique->needs & NEEDS_MIN_MAX))
         result = pass_min_max(frame, &light->shadow_map, &light->min_max);
+    if (result == PNB_OK && frame->settings->technique->prefilter)
+        result = frame->settings->technique->prefilter(frame, light);
     return result;
 }
 
 static void free_shadow_maps(struct frame *frame, struct frame_light *light) {
     gl_texture_free(frame->gl, &light->shadow_map);
     gl_texture_free(frame->gl, &light->min_max);
+    for (int i = 0; i < MAX_PREFILTERED; i++)
+        gl_texture_free(frame->gl, &light->prefiltered[i]);
 }
 
 /* Progress: light by light of every sample. */

@@ -25,6 +25,16 @@ struct technique {
     /* Optional: sample points for the shader's taps (common_taps.glsl) for a light whose emitter is elliptic or not;
      * sample: index of the anti-aliasing sample, of `samples` in all. */
     void (*taps)(const double *parameters, bool ellipse, uint32_t sample, uint32_t samples, struct taps *taps);
+    /* Optional: #define lines for the shader, a static string: what should be constant, since a software renderer
+     * executes both sides of every branch. */
+    const char *(*defines)(const double *parameters);
+    /* Optional: makes light->prefiltered of the light's shadow map and, with NEEDS_MIN_MAX, its pyramid; once, before
+     * the anti-aliasing samples. */
+    pnb_result (*prefilter)(struct frame *frame, struct frame_light *light);
+    uint32_t prefilter_bytes; /* of those textures, per texel of a shadow map, at most */
+    /* Optional: gives the shader's program, which is current, what it reads besides parameters, taps, shadow_map and
+     * min_max. Texture units from `unit` on are free. */
+    void (*bind)(struct frame *frame, const struct frame_light *light, GLuint program, int unit);
     /* Optional: draws visibility itself instead of shadow maps and one visibility pass. */
     pnb_result (*draw)(struct frame *frame, const struct frame_light *light);
 };
