@@ -11,7 +11,7 @@ uniform vec4 world;                // rgb; a: 0 = transparent film
 uniform ivec2 band;                // first row and number of rows
 uniform ivec2 corner;              // of the crop in the source
 uniform int width;                 // of the crop
-uniform float sample_weight;       // 1 / samples
+uniform float sample_weight;       // 1 / samples in the sums
 layout(std430, binding = 1) writeonly buffer pixel_block {
     float pixels[];
 };

@@ -313,7 +313,9 @@ enum pnb_pass {
 };
 
 enum pnb_settings_flags {
-    PNB_SETTINGS_FILM_TRANSPARENT = 1 /* the background is 0 with alpha 0 instead of the world colour */
+    PNB_SETTINGS_FILM_TRANSPARENT = 1, /* the background is 0 with alpha 0 instead of the world colour */
+    PNB_SETTINGS_PROGRESSIVE = 2       /* pnb_job_copy_image can show the samples made so far: after 1, 2, 4, 8 ... of
+                                        * them. Only while the shadow maps of all lights fit into memory together */
 };
 
 /* A technique's parameter by name; INT, BOOL and ENUM values are rounded. Beyond its range: clamped, with a
@@ -381,6 +383,11 @@ PNB_API pnb_result pnb_render(pnb_context *context, const pnb_scene *scene, cons
 /* Results of a finished job. Images are in the order of enum pnb_pass. Index beyond the count: INVALID_ARGUMENT. */
 PNB_API uint32_t pnb_job_image_count(const pnb_job *job);
 PNB_API pnb_result pnb_job_get_image(const pnb_job *job, uint32_t index, pnb_image *image);
+/* Copies an image of a finished job, or, of a running PROGRESSIVE one, the mean of its first *samples samples.
+ * PNB_TIMEOUT: there is none yet, nothing is written. `capacity`: floats `pixels` has room for, at least those of the
+ * image. `pixels` NULL: only the number of samples is wanted. `samples` may be NULL. */
+PNB_API pnb_result pnb_job_copy_image(const pnb_job *job, uint32_t index, float *pixels, uint64_t capacity,
+                                      uint32_t *samples);
 PNB_API uint32_t pnb_job_timing_count(const pnb_job *job);
 PNB_API pnb_result pnb_job_get_timing(const pnb_job *job, uint32_t index, pnb_timing *timing);
 /* Warnings about the scene, naming objects. Owned by the job; "" beyond the count. Readable while rendering. */

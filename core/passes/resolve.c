@@ -78,7 +78,7 @@ static pnb_result resolve_image(struct frame *frame, int index, const struct gl_
     const int corner[2] = {whole ? (int)frame->settings->crop[0] : 0, whole ? (int)frame->settings->crop[1] : 0};
     gl->Uniform2iv(gl->GetUniformLocation(program, "corner"), 1, corner);
     program_set_int(gl, program, "width", frame->width);
-    program_set_float(gl, program, "sample_weight", 1.0f / (float)frame->settings->samples);
+    program_set_float(gl, program, "sample_weight", 1.0f / (float)frame->sums_samples);
     const int row_bytes = frame->width * (int)kind->channels * (int)sizeof(float);
     int band = (int)(BAND_BYTES / (unsigned)row_bytes);
     band = band < 1 ? 1 : band > frame->height ? frame->height : band;

@@ -32,10 +32,12 @@ static void drop_images(struct pnb_job *job) {
     for (uint32_t i = 0; i < job->image_count; ++i) {
         memory_free(job->images[i].name);
         memory_free(job->images[i].pixels);
+        memory_free(job->images[i].published);
     }
     memory_free(job->images);
     job->images = NULL;
     job->image_count = 0;
+    job->published_samples = 0;
 }
 
 static void job_free(struct pnb_job *job) {
@@ -141,6 +143,30 @@ float *job_add_image(struct pnb_job *job, const char *name, uint32_t channels) {
     }
     images[job->image_count++] = image;
     return image.pixels;
+}
+
+static size_t image_floats(const struct pnb_job *job, const struct job_image *image) {
+    return (size_t)job->settings.crop[2] * job->settings.crop[3] * image->channels;
+}
+
+static pnb_result publish_image(const struct pnb_job *job, struct job_image *image) {
+    const size_t count = image_floats(job, image);
+    if (!image->published)
+        image->published = memory_array(count, sizeof *image->published);
+    if (!image->published)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    memcpy(image->published, image->pixels, count * sizeof *image->published);
+    return PNB_OK;
+}
+
+pnb_result job_publish(struct pnb_job *job, uint32_t samples) {
+    pnb_result result = PNB_OK;
+    pthread_mutex_lock(&job->lock);
+    for (uint32_t i = 0; i < job->image_count && result == PNB_OK; ++i)
+        result = publish_image(job, &job->images[i]);
+    job->published_samples = result == PNB_OK ? samples : 0;
+    pthread_mutex_unlock(&job->lock);
+    return result;
 }
 
 static struct job_timing *find_timing(struct pnb_job *job, const char *name) {
@@ -343,6 +369,39 @@ pnb_result pnb_job_get_image(const pnb_job *job, uint32_t index, pnb_image *imag
                          .name = from->name,
                          .pixels = from->pixels};
     return PNB_OK;
+}
+
+/* With the job's lock held. */
+static pnb_result copy_image(const pnb_job *job, uint32_t index, float *pixels, uint64_t capacity, uint32_t *samples) {
+    const bool done = job->state == JOB_DONE;
+    if (done && job->result != PNB_OK)
+        return error_set(job->result, "%s", job->error);
+    if (!done && job->published_samples == 0)
+        return PNB_TIMEOUT;
+    if (index >= job->image_count)
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "image %u does not exist, the job has %u", index,
+                         job->image_count);
+    const struct job_image *image = &job->images[index];
+    const size_t count = image_floats(job, image);
+    if (pixels && capacity < count)
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "image '%s' has %zu floats, there is room for %llu", image->name,
+                         count, (unsigned long long)capacity);
+    if (pixels)
+        memcpy(pixels, done ? image->pixels : image->published, count * sizeof *pixels);
+    if (samples)
+        *samples = done ? job->settings.samples : job->published_samples;
+    return PNB_OK;
+}
+
+pnb_result pnb_job_copy_image(const pnb_job *job, uint32_t index, float *pixels, uint64_t capacity, uint32_t *samples) {
+    pnb_result result = check_job(job);
+    if (result != PNB_OK)
+        return result;
+    pthread_mutex_t *lock = &((pnb_job *)job)->lock;
+    pthread_mutex_lock(lock);
+    result = copy_image(job, index, pixels, capacity, samples);
+    pthread_mutex_unlock(lock);
+    return result;
 }
 
 uint32_t pnb_job_timing_count(const pnb_job *job) {

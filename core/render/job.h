@@ -17,6 +17,7 @@ struct job_image {
     char *name;
     uint32_t channels;
     float *pixels;
+    float *published; /* what a host may copy while the job runs, guarded by the job's lock; NULL: nothing yet */
 };
 
 struct job_timing {
@@ -39,6 +40,7 @@ struct pnb_job {
     pnb_result result;
     char error[ERROR_TEXT_SIZE];
     pnb_progress progress;
+    uint32_t published_samples; /* that the images' `published` are the mean of */
     uint32_t references;  /* the host's handle and the queue's */
 
     atomic_bool cancelled;
@@ -60,6 +62,8 @@ static inline bool job_is_cancelled(struct pnb_job *job) {
 void job_set_progress(struct pnb_job *job, float fraction, uint32_t sample, const char *text);
 /* Adds an image of the settings' crop size and returns its pixels, or NULL (out of memory, error set). */
 float *job_add_image(struct pnb_job *job, const char *name, uint32_t channels);
+/* Lets the host copy the images as they are now, the mean of so many samples. */
+pnb_result job_publish(struct pnb_job *job, uint32_t samples);
 /* Adds to the times of that name; bytes are what the pass owns, so the largest counts. */
 pnb_result job_add_timing(struct pnb_job *job, const char *name, double gpu_ms, double cpu_ms, uint64_t bytes);
 

@@ -141,10 +141,20 @@ static pnb_result draw_light(struct frame *frame, uint32_t index) {
     return pass_shading(frame, light, index == 0);
 }
 
+/* Shows what a progressive job has so far; after powers of two, each of which has half the noise of the one before. */
+static pnb_result show_samples(struct frame *frame) {
+    const uint32_t done = frame->sums_samples;
+    if (!(frame->settings->flags & PNB_SETTINGS_PROGRESSIVE) || done >= frame->settings->samples || (done & (done - 1)))
+        return PNB_OK;
+    pnb_result result = pass_resolve(frame);
+    return result == PNB_OK ? job_publish(frame->job, done) : result;
+}
+
 /* Every sample of the lights first .. last - 1, whose maps are in memory. */
 static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t last) {
     pnb_result result = PNB_OK;
     for (frame->sample = 0; frame->sample < frame->settings->samples && result == PNB_OK; frame->sample++) {
+        frame->sums_samples = frame->sample + 1;
         camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
         if (first > 0 || frame->sample > 0) /* find_receivers has drawn the first */
             result = pass_gbuffer(frame, false);
@@ -154,6 +164,8 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
             result = pass_resolve_first_sample(frame);
         for (uint32_t i = first; i < last && result == PNB_OK; i++)
             result = draw_light(frame, i);
+        if (result == PNB_OK && first == 0 && last == frame->scene->light_count)
+            result = show_samples(frame);
     }
     return result;
 }

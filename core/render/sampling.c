@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979f
+#define PI           3.14159265358979f
 #define GOLDEN_ANGLE 2.39996323f
 
 void square_to_disk(float point[2]) {
@@ -105,12 +105,29 @@ static float filter_inverse(float u) {
     return 0.5f;
 }
 
+static uint32_t greatest_common_divisor(uint32_t a, uint32_t b) {
+    return b == 0 ? a : greatest_common_divisor(b, a % b);
+}
+
+/* The order of symmetric points: from the middle, each followed by its opposite, pairs in steps of the golden ratio.
+ * What the first few show is then not shifted, and does not move while the others follow. */
+static uint32_t spread(uint32_t index, uint32_t count) {
+    const uint32_t pairs = count / 2, odd = count % 2;
+    if (odd && index == 0)
+        return pairs;
+    uint32_t step = (uint32_t)(0.61803399 * pairs + 0.5);
+    while (greatest_common_divisor(step, pairs) != 1)
+        step++;
+    const uint32_t pair = (uint32_t)((uint64_t)((index - odd) / 2) * step % pairs);
+    return (index - odd) % 2 ? pairs - 1 - pair : pairs + odd + pair;
+}
+
 void pixel_sample(uint32_t index, uint32_t count, float filter_width, float offset[2]) {
     offset[0] = offset[1] = 0.0f;
     if (count <= 1)
         return;
     float point[2];
-    vogel_point((int)index, (int)count, false, 0, point);
+    vogel_point((int)spread(index, count), (int)count, false, 0, point);
     /* A Blackman-Harris filter of width w is the window over [-w, w] (Cycles' convention). */
     for (int axis = 0; axis < 2; axis++)
         offset[axis] = filter_inverse(0.5f * point[axis] + 0.5f) * 2.0f * filter_width;

@@ -93,7 +93,7 @@ pnb_result settings_resolve(const pnb_settings *from, uint32_t max_texture_size,
         .light_samples = or_default(from->light_samples, 16),
         .passes = or_default(from->passes, DEFAULT_PASSES),
     };
-    if ((result = check_bits("flags", to->flags, PNB_SETTINGS_FILM_TRANSPARENT)) != PNB_OK ||
+    if ((result = check_bits("flags", to->flags, PNB_SETTINGS_FILM_TRANSPARENT | PNB_SETTINGS_PROGRESSIVE)) != PNB_OK ||
         (result = check_bits("passes", to->passes, DEFAULT_PASSES | PNB_PASS_LIGHT_SHADOWS)) != PNB_OK ||
         (result = check_size("width", to->width, 1, max_texture_size)) != PNB_OK ||
         (result = check_size("height", to->height, 1, max_texture_size)) != PNB_OK ||

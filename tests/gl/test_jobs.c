@@ -118,6 +118,57 @@ static void progress_never_falls(void) {
     pnb_job_destroy(&job);
 }
 
+/* Copies image 0 of a progressive job until more than `before` samples are in it; their number. */
+static uint32_t copy_more(pnb_job *job, uint32_t before, float *pixels, size_t count) {
+    uint32_t samples = 0;
+    while (samples <= before) {
+        const pnb_result result = pnb_job_copy_image(job, 0, NULL, 0, &samples);
+        if (result < PNB_OK)
+            return 0;
+        (void)pnb_job_wait(job, 1, NULL);
+    }
+    CHECK_RESULT(pnb_job_copy_image(job, 0, pixels, count, &samples), PNB_OK);
+    return samples;
+}
+
+static double mean_of(const float *pixels, size_t count) {
+    double sum = 0;
+    for (size_t i = 0; i < count; ++i)
+        sum += (double)pixels[i];
+    return sum / (double)count;
+}
+
+/* Images of a running job: means of a power of two of samples, as bright as the finished image. */
+static void progressive_jobs_show_their_samples(void) {
+    enum { FLOATS = 64 * 48 * 4 };
+    static float first[FLOATS], later[FLOATS], last[FLOATS];
+    pnb_job *job = NULL;
+    pnb_settings settings = small.settings;
+    settings.samples = MANY_SAMPLES, settings.flags = PNB_SETTINGS_PROGRESSIVE, settings.passes = PNB_PASS_COMBINED;
+    CHECK_RESULT(pnb_render_start(context, small_scene_get(&small), &settings, &job), PNB_OK);
+    const uint32_t one = copy_more(job, 0, first, FLOATS), more = copy_more(job, 31, later, FLOATS);
+    CHECK(one >= 1 && (one & (one - 1)) == 0);
+    CHECK(more >= 32 && (more & (more - 1)) == 0 && more < MANY_SAMPLES);
+    CHECK_RESULT(pnb_job_copy_image(job, 1, later, FLOATS, NULL), PNB_ERROR_INVALID_ARGUMENT);
+    CHECK_RESULT(pnb_job_copy_image(job, 0, later, FLOATS - 1, NULL), PNB_ERROR_INVALID_ARGUMENT);
+    pnb_job_cancel(job);
+    CHECK_RESULT(pnb_job_wait(job, UINT32_MAX, NULL), PNB_ERROR_CANCELLED);
+    CHECK_RESULT(pnb_job_copy_image(job, 0, later, FLOATS, NULL), PNB_ERROR_CANCELLED);
+    pnb_job_destroy(&job);
+    settings.samples = 64;
+    CHECK_RESULT(pnb_render(context, small_scene_get(&small), &settings, &job), PNB_OK);
+    uint32_t all = 0;
+    CHECK_RESULT(pnb_job_copy_image(job, 0, last, FLOATS, &all), PNB_OK);
+    CHECK_INT(all, 64);
+    const double wanted = mean_of(last, FLOATS);
+    printf("means of %u, %u and 64 samples: %.4f %.4f %.4f\n", one, more, mean_of(first, FLOATS),
+           mean_of(later, FLOATS), wanted);
+    CHECK_NEAR(mean_of(first, FLOATS), wanted, 0.05 * wanted); /* edges of one sample are steps */
+    CHECK_NEAR(mean_of(later, FLOATS), wanted, 0.01 * wanted);
+    pnb_job_destroy(&job);
+    CHECK_RESULT(pnb_job_copy_image(NULL, 0, last, FLOATS, NULL), PNB_ERROR_INVALID_ARGUMENT);
+}
+
 static void progress_is_kept_in_range(void) {
     pnb_job *job = NULL;
     pnb_progress progress = PNB_INIT(pnb_progress);
@@ -372,6 +423,7 @@ int main(void) {
     results_check_their_arguments();
     bad_renders_are_refused();
     progress_never_falls();
+    progressive_jobs_show_their_samples();
     progress_is_kept_in_range();
     timings_of_one_name_are_added();
     running_jobs_are_cancelled();

@@ -210,6 +210,29 @@ static void pixel_samples_follow_the_filter(void) {
     CHECK(offset[0] == 0 && offset[1] == 0);
 }
 
+/* What a progressive render shows after 1, 2, 4 ... samples must not be shifted. Of an even number of them pairs
+ * cancel; an odd number begins with the centre and lacks one point's opposite, which is at most two filter widths away.
+ */
+static void first_pixel_samples_surround_the_centre(void) {
+    static const uint32_t counts[] = {2, 3, 4, 5, 8, 16, 64, 100, 1024, 4096};
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+        double sum[2] = {0}, worst = 0;
+        for (uint32_t i = 0; i < counts[c]; i++) {
+            float offset[2];
+            pixel_sample(i, counts[c], 1.5f, offset);
+            sum[0] += (double)offset[0];
+            sum[1] += (double)offset[1];
+            const double shift = fmax(fabs(sum[0]), fabs(sum[1])) / (i + 1);
+            if (i == 0)
+                CHECK_AT_MOST(shift, 0.5);
+            else if ((i & (i + 1)) == 0)
+                worst = fmax(worst, shift - (counts[c] % 2 ? 3.0 / (i + 1) : 0));
+        }
+        printf("%u pixel samples: powers of two of them are at most %.6f pixels off\n", counts[c], worst);
+        CHECK_AT_MOST(worst, 1e-4);
+    }
+}
+
 int main(void) {
     patterns_are_even();
     pairs_are_opposite();
@@ -218,5 +241,6 @@ int main(void) {
     disk_map_preserves_area();
     spheres_are_even();
     pixel_samples_follow_the_filter();
+    first_pixel_samples_surround_the_centre();
     return check_report();
 }
