@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, device, engine, props, report, textures, ui
+from . import capi, device, engine, props, report, textures, ui, viewport
 
 bl_info = {
     "name": "Penumbra",
@@ -40,6 +40,7 @@ def register():
 def unregister():
     bpy.app.handlers.render_init.remove(_forget_textures)
     bpy.types.TOPBAR_MT_file_export.remove(_menu)
+    viewport.unregister()
     ui.unregister()
     for cls in reversed(_CLASSES):
         bpy.utils.unregister_class(cls)

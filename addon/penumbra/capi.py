@@ -20,7 +20,7 @@ INSTANCE_SHADOW_CATCHER = 16
 MATERIAL_CULL_CAMERA, MATERIAL_CULL_SHADOW, MATERIAL_HOLDOUT = 1, 2, 4
 LIGHT_NO_SHADOW, LIGHT_COSINE_SPOT = 1, 2
 PASS_COMBINED, PASS_DEPTH, PASS_NORMAL, PASS_SHADOW, PASS_LIGHT_SHADOWS = 1, 2, 4, 8, 16
-SETTINGS_FILM_TRANSPARENT = 1
+SETTINGS_FILM_TRANSPARENT, SETTINGS_PROGRESSIVE = 1, 2
 
 
 class Error(Exception):
@@ -157,6 +157,7 @@ _FUNCTIONS = {
     "pnb_job_destroy": (None, [_HANDLE_OUT]),
     "pnb_job_image_count": (c_uint32, [_HANDLE]),
     "pnb_job_get_image": (CHECKED, [_HANDLE, c_uint32, POINTER(Image)]),
+    "pnb_job_copy_image": (CHECKED, [_HANDLE, c_uint32, c_void_p, c_uint64, POINTER(c_uint32)]),
     "pnb_job_timing_count": (c_uint32, [_HANDLE]),
     "pnb_job_get_timing": (CHECKED, [_HANDLE, c_uint32, POINTER(Timing)]),
     "pnb_job_message_count": (c_uint32, [_HANDLE]),

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The render engine: stills and animations."""
+"""The render engine: stills and animations here, viewports in viewport.py."""
 
 import os
 import re
 import traceback
-from ctypes import byref, c_float, c_void_p
+from ctypes import byref, c_void_p
 
 import bpy
 
-from . import capi, command_line, device, export, passes, props, report
+from . import capi, command_line, device, export, passes, report, settings, viewport
 
 # How long a wait for the library may delay a cancel, in milliseconds.
 POLL_MS = 20
@@ -33,8 +33,25 @@ class PenumbraEngine(bpy.types.RenderEngine):
     bl_use_eevee_viewport = True
     bl_use_shading_nodes_custom = False
 
+    _viewport = None    # of an engine that draws a region
+
     def __init__(self, *args, **kwargs):
         super().__init__(*args, **kwargs)
+
+    def __del__(self):
+        if self._viewport:
+            self._viewport.close()
+
+    def view_update(self, context, depsgraph):
+        self._region().update(context, depsgraph)
+
+    def view_draw(self, context, depsgraph):
+        self._region().draw(context, depsgraph)
+
+    def _region(self):
+        if self._viewport is None:
+            self._viewport = viewport.Viewport(self)
+        return self._viewport
 
     def update_render_passes(self, scene=None, renderlayer=None):
         try:
@@ -85,22 +102,23 @@ class PenumbraEngine(bpy.types.RenderEngine):
         camera = scene.camera
         exported.set_camera(camera, self.camera_model_matrix(camera), self.camera_shift_x(camera), width, height,
                             render.pixel_aspect_y / render.pixel_aspect_x)
-        settings = make_settings(depsgraph, width, height)
+        values = settings.for_still(depsgraph, width, height)
         path = CaptureRequest.path or capture_path(depsgraph)
         if path:
-            export.write_capture(path, exported.scene, settings)
+            export.write_capture(path, exported.scene, values)
         if CaptureRequest.path:
             return False
         result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name, view=view)
         done = False
         try:
-            settings.crop[2:] = result.resolution_x, result.resolution_y
+            values.crop[2:] = result.resolution_x, result.resolution_y
             job = c_void_p()
-            capi.library().render_start(_context(), byref(exported.scene), byref(settings), byref(job))
+            context = device.context(settings.backend())
+            capi.library().render_start(context, byref(exported.scene), byref(values), byref(job))
             try:
                 done = self._wait(job, exported.warnings)
                 if done:
-                    passes.fill_layer(result.layers[0], depsgraph.view_layer, job, *settings.crop[2:])
+                    passes.fill_layer(result.layers[0], depsgraph.view_layer, job, *values.crop[2:])
                     self._show_statistics(job)
             finally:
                 capi.library().destroy('job', job)
@@ -132,7 +150,6 @@ class PenumbraEngine(bpy.types.RenderEngine):
                         for index in range(library.job_message_count(job)))
         return True
 
-
     def _show_statistics(self, job):
         timings = list(_timings(job))
         megabytes = sum(timing.bytes for timing in timings) / 2 ** 20
@@ -150,40 +167,6 @@ def _timings(job):
         timing = capi.Timing()
         capi.library().job_get_timing(job, index, byref(timing))
         yield timing
-
-
-def _context():
-    return device.context(command_line.options().get('backend') or props.backend())
-
-
-def make_settings(depsgraph, width, height):
-    """pnb_settings of the scene for an image of this full size."""
-    scene = depsgraph.scene_eval
-    options = scene.penumbra
-    technique = props.technique(options, command_line.options().get('technique'))
-    values = props.parameter_values(options, technique)
-    settings = capi.Settings(
-        technique=technique[0].id, width=width, height=height, samples=options.samples,
-        filter_width=scene.render.filter_size, shadow_map_size=options.shadow_map_size,
-        light_samples=options.light_samples, passes=passes.wanted(depsgraph.view_layer),
-        flags=capi.SETTINGS_FILM_TRANSPARENT if scene.render.film_transparent else 0)
-    settings.values = (capi.Value * len(values))(*[capi.Value(name.encode(), value) for name, value in values])
-    settings.value_count = len(values)
-    settings.crop[:] = crop(scene.render, width, height)
-    return settings
-
-
-def crop(render, width, height):
-    """x, y, width, height of the border in pixels: Blender multiplies in single precision and cuts."""
-    if not render.use_border:
-        return [0, 0, width, height]
-    left, right = (_pixels(bound, width) for bound in (render.border_min_x, render.border_max_x))
-    bottom, top = (_pixels(bound, height) for bound in (render.border_min_y, render.border_max_y))
-    return [left, bottom, right - left, top - bottom]
-
-
-def _pixels(fraction, size):
-    return int(c_float(fraction * size).value)
 
 
 def capture_path(depsgraph):

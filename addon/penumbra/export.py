@@ -15,10 +15,13 @@ _UNSUPPORTED = {'CURVES': "hair curves", 'POINTCLOUD': "a point cloud", 'VOLUME'
 class SceneExport:
     """A pnb_scene and all it points to; `close` it when the library has copied it."""
 
-    def __init__(self, depsgraph, use_pointers=True):
+    def __init__(self, depsgraph, use_pointers=True, kept_meshes=None, shown_in=None):
+        """`kept_meshes`: KeptMeshes that outlive this export; `shown_in`: only what this 3D view's local view shows."""
         self.scene = capi.Scene(camera=capi.Camera())
         self.warnings = []
         self._use_pointers = use_pointers
+        self._kept_meshes = kept_meshes
+        self._shown_in = shown_in
         self._meshes = {}           # address of the evaluated data: handle, or None if it has no mesh
         self._textures = {}         # (image name, use): (handle, whether it is ours)
         self._materials = {}        # address: index; None: no material
@@ -43,8 +46,9 @@ class SceneExport:
 
     def close(self):
         library = capi.library()
-        for handle in filter(None, self._meshes.values()):
-            library.destroy('mesh', handle)
+        if self._kept_meshes is None:
+            for handle in filter(None, self._meshes.values()):
+                library.destroy('mesh', handle)
         for handle, is_ours in self._textures.values():
             if is_ours and handle:
                 library.destroy('texture', handle)
@@ -65,7 +69,7 @@ class SceneExport:
         self._instances = (capi.Instance * count)()
         used = 0
         for number, instance in enumerate(depsgraph.object_instances):
-            if not shown[number]:
+            if not shown[number] or not self._is_shown(instance):
                 continue
             ob = instance.object
             if ob.type == 'LIGHT':
@@ -79,6 +83,11 @@ class SceneExport:
             memmove(addressof(target) + capi.Instance.matrix.offset, matrices.buffer_info()[0] + 64 * number, 64)
             used += 1
         self.scene.instance_count = used
+
+    def _is_shown(self, instance):
+        if self._shown_in is None:
+            return True
+        return (instance.parent or instance.object).original.visible_in_viewport_get(self._shown_in)
 
     def _fill_instance(self, target, ob, mesh):
         target.struct_size = ctypes.sizeof(capi.Instance)
@@ -115,7 +124,8 @@ class SceneExport:
             return None
         key = ob.data.as_pointer()
         if key not in self._meshes:
-            self._meshes[key] = self._create_mesh(ob)
+            keep = self._kept_meshes
+            self._meshes[key] = keep.get(ob, self._create_mesh) if keep else self._create_mesh(ob)
         return self._meshes[key]
 
     def _create_mesh(self, ob):
@@ -171,6 +181,52 @@ class SceneExport:
         else:
             color = world.color
         self.scene.world_color[:] = color
+
+
+class KeptMeshes:
+    """Meshes kept from one export of a viewport to the next while Blender says that they did not change."""
+
+    def __init__(self):
+        self._kept = {}         # address of the evaluated data: (what identifies its content, handle)
+        self._used = set()
+        self._changed = None    # addresses of originals; None: anything
+
+    def begin(self, depsgraph):
+        """Before an export. Undo and frame changes come without a list of updates: everything is looked at again."""
+        updates = list(depsgraph.updates)
+        self._used = set()
+        self._changed = {update.id.original.as_pointer() for update in updates
+                         if update.is_updated_geometry} if updates else None
+
+    def get(self, ob, create):
+        data = ob.data
+        key = data.as_pointer()
+        content = (ob.name_full, len(data.vertices), len(data.loops), len(data.polygons))
+        kept = self._kept.get(key)
+        if kept is None or kept[0] != content or self._may_differ(ob):
+            self._drop(key)
+            self._kept[key] = content, create(ob)
+        self._used.add(key)
+        return self._kept[key][1]
+
+    def _may_differ(self, ob):
+        if self._changed is None or ob.data.is_editmode:
+            return True
+        original = ob.original
+        return original.as_pointer() in self._changed or original.data and original.data.as_pointer() in self._changed
+
+    def end(self):
+        for key in self._kept.keys() - self._used:
+            self._drop(key)
+
+    def close(self):
+        for key in list(self._kept):
+            self._drop(key)
+
+    def _drop(self, key):
+        _content, handle = self._kept.pop(key, (None, None))
+        if handle:
+            capi.library().destroy('mesh', handle)
 
 
 def write_capture(path, scene, settings):

@@ -85,6 +85,15 @@ def _scene_class(table, technique_classes):
         'light_samples': IntProperty(
             name="Light Samples", default=16, min=1, max=64,
             description="Reference: N, for N x N samples of each light"),
+        'viewport_samples': IntProperty(
+            name="Viewport Samples", default=16, min=1, max=4096,
+            description="Anti-aliasing samples per pixel of a viewport at rest"),
+        'viewport_latency': IntProperty(
+            name="Latency", default=100, min=10, max=2000,
+            description="Milliseconds within which a viewport shall follow input: its first picture has as many pixels "
+                        "as fit into that time"),
+        'use_refine': BoolProperty(
+            name="Refine", description="Let a viewport at rest go on to the reference, the ground truth"),
     }
     for (info, _parameters), cls in zip(table, technique_classes):
         annotations[info.id.decode().lower()] = PointerProperty(type=cls)

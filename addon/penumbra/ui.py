@@ -65,8 +65,12 @@ class PENUMBRA_PT_sampling(_EnginePanel, Panel):
     def draw(self, context):
         settings = context.scene.penumbra
         column = self._column()
-        column.prop(settings, 'samples')
+        column.prop(settings, 'samples', text="Render")
+        column.prop(settings, 'viewport_samples', text="Viewport")
         column.prop(settings, 'light_samples')
+        column.separator()
+        column.prop(settings, 'viewport_latency')
+        column.prop(settings, 'use_refine')
 
 
 class PENUMBRA_PT_film(_EnginePanel, Panel):

@@ -10,7 +10,7 @@ import mathutils
 
 from harness import SceneTest, add_camera, add_cube, add_light, add_mesh, add_plane, output, white_material
 
-from penumbra import capi, compat, engine, export, mesh as mesh_export
+from penumbra import capi, compat, export, mesh as mesh_export, settings
 
 
 def read(path):
@@ -110,7 +110,7 @@ class Pyramid(ExportTest):
         scene.slots = (capi.c_uint32 * 2)(0, 1)
         scene.camera = self.camera()
         path = output('by_hand.pnb')
-        export.write_capture(path, scene, engine.make_settings(bpy.context.evaluated_depsgraph_get(), 64, 48))
+        export.write_capture(path, scene, settings.for_still(bpy.context.evaluated_depsgraph_get(), 64, 48))
         capi.library().destroy('mesh', mesh)
         return path
 
@@ -150,7 +150,7 @@ class Pointers(ExportTest):
         with export.SceneExport(depsgraph, use_pointers) as exported:
             camera = self.scene.camera
             exported.set_camera(camera, camera.matrix_world, 0.0, 64, 48, 1.0)
-            export.write_capture(output(name), exported.scene, engine.make_settings(depsgraph, 64, 48))
+            export.write_capture(output(name), exported.scene, settings.for_still(depsgraph, 64, 48))
         return content(output(name))
 
     def test_equal_files(self):

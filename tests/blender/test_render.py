@@ -8,7 +8,7 @@ import bpy
 from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_plane, add_world, output, read_byte_image,
                      white_material)
 
-from penumbra import engine as penumbra_engine
+from penumbra import settings as penumbra_settings
 
 
 def channels_by_pass(picture):
@@ -53,7 +53,7 @@ class Sizes(SceneTest):
             with self.subTest(border=(left, right, bottom, top)):
                 render.border_min_x, render.border_max_x = left, right
                 render.border_min_y, render.border_max_y = bottom, top
-                x, y, width, height = penumbra_engine.crop(render, 71, 47)
+                x, y, width, height = penumbra_settings.border(render, 71, 47)
                 part = self.render("part")['ViewLayer.Combined.R']
                 self.assertEqual(part[:2], (width, height))
                 expected = [full[2][(y + row) * 71 + x + column] for row in range(height) for column in range(width)]
@@ -64,7 +64,7 @@ class Sizes(SceneTest):
         full = self.render("full")['ViewLayer.Combined.G']
         render.use_border = True
         render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.25, 0.75, 0.25, 0.75
-        x, y, width, height = penumbra_engine.crop(render, 64, 48)
+        x, y, width, height = penumbra_settings.border(render, 64, 48)
         part = self.render("part")['ViewLayer.Combined.G']
         self.assertEqual(part[:2], (64, 48))
         for row in range(48):
@@ -244,12 +244,12 @@ class Robustness(SceneTest):
     def test_exception_inside(self):
         """A defect of ours is an error message, not a crash."""
         self.still_life()
-        original = penumbra_engine.make_settings
-        self.addCleanup(lambda: setattr(penumbra_engine, 'make_settings', original))
+        original = penumbra_settings.for_still
+        self.addCleanup(lambda: setattr(penumbra_settings, 'for_still', original))
 
         def broken(*_arguments):
             raise KeyError("planted")
-        penumbra_engine.make_settings = broken
+        penumbra_settings.for_still = broken
         with self.assertRaisesRegex(RuntimeError, "planted"):
             self.render()
 

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""scene.penumbra -> pnb_settings, for stills and for viewports."""
+
+from ctypes import c_float
+
+from . import capi, command_line, passes, props
+
+
+def backend():
+    return command_line.options().get('backend') or props.backend()
+
+
+def for_still(depsgraph, width, height):
+    """pnb_settings of the scene for an image of this full size."""
+    scene = depsgraph.scene_eval
+    settings = _common(scene, command_line.options().get('technique'), width, height)
+    settings.samples = scene.penumbra.samples
+    settings.passes = passes.wanted(depsgraph.view_layer)
+    settings.crop[:] = border(scene.render, width, height)
+    return settings
+
+
+def for_viewport(scene, width, height, crop, samples, is_reference):
+    settings = _common(scene, 'REFERENCE' if is_reference else None, width, height)
+    settings.samples = samples
+    settings.passes = capi.PASS_COMBINED
+    settings.flags |= capi.SETTINGS_PROGRESSIVE
+    settings.crop[:] = crop
+    return settings
+
+
+def viewport_key(scene):
+    """Everything that a viewport's picture depends on besides scene and view, to be compared."""
+    options = scene.penumbra
+    row = props.technique(options)
+    return (options.technique, tuple(props.parameter_values(options, row)), options.shadow_map_size,
+            options.light_samples, options.viewport_samples, options.use_refine, scene.render.film_transparent,
+            scene.render.filter_size, backend())
+
+
+def _common(scene, technique, width, height):
+    options = scene.penumbra
+    row = props.technique(options, technique)
+    values = props.parameter_values(options, row)
+    settings = capi.Settings(
+        technique=row[0].id, width=width, height=height, filter_width=scene.render.filter_size,
+        shadow_map_size=options.shadow_map_size, light_samples=options.light_samples,
+        flags=capi.SETTINGS_FILM_TRANSPARENT if scene.render.film_transparent else 0)
+    settings.values = (capi.Value * len(values))(*[capi.Value(name.encode(), value) for name, value in values])
+    settings.value_count = len(values)
+    return settings
+
+
+def border(render, width, height):
+    """x, y, width, height of the border in pixels: Blender multiplies in single precision and cuts."""
+    if not render.use_border:
+        return [0, 0, width, height]
+    left, right = (_pixels(bound, width) for bound in (render.border_min_x, render.border_max_x))
+    bottom, top = (_pixels(bound, height) for bound in (render.border_min_y, render.border_max_y))
+    return [left, bottom, right - left, top - bottom]
+
+
+def _pixels(fraction, size):
+    return int(c_float(fraction * size).value)

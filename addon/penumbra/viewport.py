@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rendered viewport. A region's engine exports the scene when Blender says that it changed, renders on the library's
+thread and draws the newest picture: first a quick one, then all pixels and more samples, then the reference."""
+
+import time
+import traceback
+import weakref
+from typing import NamedTuple
+
+import bpy
+
+from . import capi, command_line, device, draw, export, jobs, settings, view
+
+# Seconds between two looks at the library's thread.
+_POLL = 0.005
+# Seconds without input before more samples are worth starting.
+_REST = 0.12
+# First frames of at most so many milliseconds are waited for: the picture then never trails behind the view.
+_WAIT_MS = 25
+# Of the region's width and height, for the first picture.
+_SCALES = (1.0, 0.7, 0.5, 0.35, 0.25)
+
+# What a run makes: a quick picture, all samples, all samples by the reference.
+_FIRST, _SAMPLES, _REFERENCE = range(3)
+
+_viewports = weakref.WeakSet()
+
+
+class Viewport:
+    """What one region shows and what is being done for it. Lives as long as the region's engine."""
+
+    def __init__(self, engine):
+        self._engine = weakref.ref(engine)
+        self._exported = None
+        self._meshes = export.KeptMeshes()
+        self._visibility = None     # what decides which objects this viewport shows
+        self._version = 0           # of the exported scene
+        self._wanted = None         # everything the picture depends on
+        self._run = None
+        self._next = None           # (kind, time) of the next run
+        self._picture = None
+        self._error = ''
+        self._speed = Speed()
+        _viewports.add(self)
+
+    def close(self):
+        _viewports.discard(self)
+        self._stop()
+        if self._exported:
+            self._exported.close()
+        self._exported = None
+        self._meshes.close()
+
+    # ---- Called by Blender ----
+
+    def update(self, context, depsgraph):
+        """The scene may have changed."""
+        self._guard(self._update, context, depsgraph)
+
+    def draw(self, context, depsgraph):
+        self._guard(self._draw, context, depsgraph)
+        if self._picture:
+            self._picture.draw(context.region)
+        if self._error:
+            draw.draw_message(context.region, self._error)
+        self._show_status()
+
+    def _guard(self, action, *arguments):
+        """An exception that leaves a callback is printed at every redraw and seen by nobody."""
+        try:
+            action(*arguments)
+        except Exception as error:
+            self._fail(error)
+
+    def _fail(self, error):
+        self._stop()
+        if isinstance(error, (capi.Error, command_line.UsageError)):
+            self._error = f"Penumbra cannot draw this viewport: {error}"
+        else:
+            traceback.print_exc()
+            self._error = f"Penumbra cannot draw this viewport. Unexpected {type(error).__name__}: {error}"
+        if getattr(error, 'result', None) == capi.CONTEXT_LOST:
+            device.close()
+
+    def _update(self, context, depsgraph):
+        self._error = ''
+        self._visibility = _visibility(context.space_data)
+        shows = None if not any(self._visibility) else context.space_data
+        self._meshes.begin(depsgraph)
+        exported = export.SceneExport(depsgraph, kept_meshes=self._meshes, shown_in=shows)
+        if self._exported:
+            self._exported.close()
+        self._exported = exported
+        self._meshes.end()
+        self._version += 1
+        self._schedule(context, depsgraph)
+
+    def _draw(self, context, depsgraph):
+        if self._exported is None or self._visibility != _visibility(context.space_data):
+            self._update(context, depsgraph)
+        else:
+            self._schedule(context, depsgraph)
+        self._take_picture()
+
+    # ---- Deciding what to render ----
+
+    def _schedule(self, context, depsgraph):
+        scene = depsgraph.scene_eval
+        wanted = Wanted(self._version, view.read(context, scene), settings.viewport_key(scene),
+                        1.0 / self._engine().get_preview_pixel_size(scene))
+        if wanted != self._wanted:
+            self._wanted = wanted
+            self._error = ''
+            self._next = (_FIRST, 0.0)
+            # A quick picture is finished: else none would be seen while the input does not pause.
+            if self._run and self._run.kind != _FIRST:
+                self._stop_run()
+        self._start_next(scene)
+
+    def _start_next(self, scene):
+        if self._run or not self._next or self._error or time.monotonic() < self._next[1]:
+            _wake()
+            return
+        if bpy.app.is_job_running('RENDER'):
+            self._next = self._next[0], time.monotonic() + _REST
+            _wake()
+            return
+        kind, self._next = self._next[0], None
+        self._run = Run(kind, self._wanted, self._exported, scene, self._speed)
+        if kind == _FIRST and self._speed.expected(self._run.scale) <= _WAIT_MS:
+            self._run.job.wait(_WAIT_MS)
+        _wake()
+
+    def _take_picture(self):
+        """The newest picture of the run, if there is a newer one; then what follows."""
+        run = self._run
+        if run is None:
+            return
+        try:
+            samples = run.job.samples_done()
+            if samples > run.samples_taken:
+                if run.kind == _FIRST:
+                    self._speed.add(run.scale, run.elapsed_ms())
+                self._picture = Picture(run)
+        except capi.Error as error:
+            self._stop_run()
+            if error.result != capi.CANCELLED:
+                raise
+            self._next = self._next or (_FIRST, 0.0)
+            return
+        if run.samples_taken == run.job.samples:
+            self._finish(run)
+
+    def _finish(self, run):
+        self._stop_run()
+        if self._next is None and run.wanted == self._wanted:
+            follows = run.following_kind()
+            if follows is not None:
+                self._next = follows, time.monotonic() + (_REST if run.kind == _FIRST else 0.0)
+        _wake()
+
+    def _stop_run(self):
+        if self._run:
+            self._run.job.discard()
+            self._run = None
+
+    def _stop(self):
+        self._stop_run()
+        self._next = None
+
+    # ---- Between Blender's calls ----
+
+    def poll(self):
+        """Asks for a redraw when there is something to draw or to start; whether to be asked again."""
+        engine = self._engine()
+        if engine is None:
+            return False
+        due = self._next is not None and self._run is None and time.monotonic() >= self._next[1]
+        if due or self._run and self._run.has_news():
+            try:
+                engine.tag_redraw()
+            except ReferenceError:  # Blender freed the engine
+                return False
+        return self._run is not None or self._next is not None
+
+    def _show_status(self):
+        engine = self._engine()
+        if engine is None:
+            return
+        if self._error:
+            engine.update_stats("Penumbra", self._error.splitlines()[0])
+        elif self._picture:
+            engine.update_stats("Penumbra", self._picture.label)
+        else:
+            engine.update_stats("Penumbra", "Preparing")
+
+
+class Wanted(NamedTuple):
+    """Everything a picture depends on, compared by value."""
+    version: int            # of the exported scene
+    view: view.View
+    key: tuple              # of the settings
+    pixel_scale: float
+
+
+class Run:
+    """One job and the picture it makes."""
+
+    def __init__(self, kind, wanted, exported, scene, speed):
+        self.kind, self.wanted = kind, wanted
+        options = scene.penumbra
+        self.scale = wanted.pixel_scale * (speed.choose(options.viewport_latency) if kind == _FIRST else 1.0)
+        self.samples_taken = 0
+        self._seen = 0
+        self._options = options.technique, options.use_refine, options.viewport_samples
+        width, height = (max(1, int(size * self.scale + 0.5)) for size in wanted.view[:2])
+        values = settings.for_viewport(scene, width, height, view.crop(wanted.view, width, height),
+                                       1 if kind == _FIRST else options.viewport_samples, kind == _REFERENCE)
+        self.technique = values.technique.decode()
+        self.size = width, height
+        self.crop = tuple(values.crop)
+        view.fill_camera(exported.scene.camera, wanted.view)
+        self._started = time.monotonic()
+        self.job = jobs.Job(device.context(settings.backend()), exported.scene, values)
+
+    def elapsed_ms(self):
+        return (time.monotonic() - self._started) * 1000.0
+
+    def has_news(self):
+        """A new picture or an error, once each."""
+        try:
+            samples = self.job.samples_done()
+        except capi.Error:
+            samples = -1
+        news = samples != self._seen
+        self._seen = samples
+        return news
+
+    def following_kind(self):
+        technique, refine, samples = self._options
+        if self.kind == _FIRST and (samples > 1 or self.scale < 1.0):
+            return _SAMPLES
+        if self.kind != _REFERENCE and refine and technique != 'REFERENCE':
+            return _REFERENCE
+        return None
+
+
+class Picture:
+    """The newest picture of a run."""
+
+    def __init__(self, run):
+        pixels, run.samples_taken = run.job.copy()
+        self._texture = draw.make_texture(run.job.width, run.job.height, pixels.buffer_info()[0])
+        self._crop, self._size = run.crop, run.size
+        parts = [run.technique, f"sample {run.samples_taken} of {run.job.samples}"]
+        if run.scale < 1.0:
+            parts.append(f"{run.scale:.0%} resolution")
+        self.label = ", ".join(parts)
+
+    def draw(self, region):
+        x, y = region.width / self._size[0], region.height / self._size[1]
+        draw.draw_picture(self._texture, self._crop[0] * x, self._crop[1] * y, self._crop[2] * x, self._crop[3] * y)
+
+
+class Speed:
+    """How long first pictures take at each scale, to choose the largest that meets the latency."""
+
+    def __init__(self):
+        self._ms = {}
+
+    def add(self, scale, ms):
+        """What was measured at other scales changed by the same ratio."""
+        ratio = ms / self._ms[scale] if scale in self._ms else 1.0
+        self._ms = {other: value * ratio for other, value in self._ms.items()}
+        self._ms[scale] = ms
+
+    def expected(self, scale):
+        if not self._ms:
+            return float('inf')
+        nearest = min(self._ms, key=lambda known: abs(known - scale))
+        return self._ms[nearest] * (scale / nearest) ** 2
+
+    def choose(self, latency_ms):
+        if not self._ms:
+            return _SCALES[2]
+        return next((scale for scale in _SCALES if self.expected(scale) <= latency_ms), _SCALES[-1])
+
+
+def _visibility(space):
+    """Local views and local collections, which come and go without an update of the scene."""
+    return bool(space.local_view), space.use_local_collections
+
+
+def _wake():
+    if not bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.register(_tick, first_interval=_POLL, persistent=True)
+
+
+def _tick():
+    busy = [viewport.poll() for viewport in list(_viewports)]
+    return _POLL if jobs.sweep() or any(busy) else None
+
+
+def unregister():
+    if bpy.app.timers.is_registered(_tick):
+        bpy.app.timers.unregister(_tick)
+    for viewport in list(_viewports):
+        viewport.close()
