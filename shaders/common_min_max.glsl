@@ -1,6 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hierarchical shadow map (Guennebaud, Barthe, Paulin 2006): what a whole rectangle of the map can do to a receiver.
 
+// The first level whose texels are as wide as a rectangle of this size: then it touches two at most on each axis.
+int depth_range_level(vec2 side) {
+    return clamp(int(ceil(log2(max(max(side.x, side.y), 2.0)))), 1, textureQueryLevels(min_max));
+}
+
+// Low and high corner, inside the map, of what depth_range really looks at.
+vec4 depth_range_cover(receiver r, vec2 extent) {
+    vec2 last = vec2(r.map_size) - 1.0;
+    vec2 low = clamp(r.center - extent, vec2(0.0), last), high = clamp(r.center + extent, vec2(0.0), last);
+    int level = depth_range_level(2.0 * extent);
+    return vec4((ivec4(low, high) >> level) + ivec4(0, 0, 1, 1)) * float(1 << level);
+}
+
 // Least and greatest light-space depth of the texels in the rectangle center +- extent; 1e30 outside the map.
 vec2 depth_range(receiver r, vec2 extent) {
     vec2 size = vec2(r.map_size);
@@ -9,8 +22,7 @@ vec2 depth_range(receiver r, vec2 extent) {
     vec2 side = high - low;
     low = clamp(low, vec2(0.0), size - 1.0);
     high = clamp(high, vec2(0.0), size - 1.0);
-    // The first level whose texels are as wide as the rectangle: then it touches two at most on each axis.
-    int level = clamp(int(ceil(log2(max(max(side.x, side.y), 2.0)))), 1, textureQueryLevels(min_max));
+    int level = depth_range_level(side);
     ivec2 a = ivec2(low) >> level, b = ivec2(high) >> level;
     vec2 t0 = texelFetch(min_max, ivec3(a, r.layer), level - 1).rg;
     vec2 t1 = texelFetch(min_max, ivec3(b.x, a.y, r.layer), level - 1).rg;
@@ -24,6 +36,20 @@ vec2 depth_range(receiver r, vec2 extent) {
 float nearest_depth(receiver r) {
     int level = textureQueryLevels(min_max) - 1;
     return r.near_depth + r.depth_span * texelFetch(min_max, ivec3(0, 0, r.layer), level).r;
+}
+
+// Scale of a blocker search: the kernel of the nearest blocker there can be. Each step looks up the nearest depth inside
+// the last rectangle, which can only shrink it (Guennebaud et al. 2006, section 4.2), and never loses a blocker.
+// `depths`: range of depths in the last rectangle looked up, which holds the final one.
+float search_scale(receiver r, int steps, out vec2 depths) {
+    float scale = max(kernel_scale(r, nearest_depth(r)), 0.0);
+    depths = depth_range(r, kernel_extent(r, scale) + 1.0);
+    for (int i = 0; i < steps; i++) {
+        scale = clamp(kernel_scale(r, min(depths.x, r.position.z)), 0.0, scale);
+        if (i + 1 < steps)
+            depths = depth_range(r, kernel_extent(r, scale) + 1.0);
+    }
+    return scale;
 }
 
 // Least and greatest height (is_blocker) of the texels in the rectangle center +- extent at the depths given.

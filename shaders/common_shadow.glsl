@@ -95,6 +95,16 @@ bool is_blocker(receiver r, vec2 texel, float depth) {
     return depth < r.limit && height > r.plane;
 }
 
+// Light-space depth of the receiver's tangent plane at a map coordinate; far behind everything where it does not face
+// the light there.
+float tangent_depth(receiver r, vec2 coordinate) {
+    float height = dot(r.slope, coordinate - 0.5) + r.level, level = dot(r.normal, r.position);
+    bool faces = is_perspective() ? height < 0.0 : r.normal.z < 0.0;
+    float depth = is_perspective() ? level / height : (level - height) / r.normal.z;
+    return faces ? clamp(depth, r.near_depth - r.depth_span, r.near_depth + 4.0 * r.depth_span)
+                 : r.near_depth + 4.0 * r.depth_span;
+}
+
 // Whether the texel at a map coordinate blocks the receiver, and its light-space depth. Nothing blocks outside the map:
 // light_views_fit covers every caster that matters.
 bool blocker_at(receiver r, vec2 coordinate, out float depth) {

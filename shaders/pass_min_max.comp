@@ -9,7 +9,7 @@ uniform int source_is_map; // 1: one channel
 
 vec2 source_texel(ivec3 texel, ivec2 last) {
     vec2 t = texelFetch(source, ivec3(min(texel.xy, last), texel.z), source_level).rg;
-    return source_is_map == 1 ? t.rr : t;
+    return source_is_map == 1 ? vec2(t.r < 1.0 ? t.r : 1.0) : t; // NaN counts as nothing there
 }
 
 void main() {

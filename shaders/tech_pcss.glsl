@@ -8,20 +8,6 @@ uniform int p_min_max;
 uniform int p_blocker_average;
 const int AREA_AVERAGE = 0;
 
-// Scale of the search: the kernel of the nearest blocker there can be. Each step looks up the nearest depth inside the
-// last rectangle, which can only shrink it (Guennebaud et al. 2006, section 4.2), and never loses a blocker. `depths`:
-// range of depths in the last rectangle looked up, which holds the final one.
-float search_scale(receiver r, out vec2 depths) {
-    float scale = max(kernel_scale(r, nearest_depth(r)), 0.0);
-    depths = depth_range(r, kernel_extent(r, scale) + 1.0);
-    for (int i = 0; i < p_search_reduction; i++) {
-        scale = clamp(kernel_scale(r, min(depths.x, r.position.z)), 0.0, scale);
-        if (i + 1 < p_search_reduction)
-            depths = depth_range(r, kernel_extent(r, scale) + 1.0);
-    }
-    return scale;
-}
-
 // Counts a texel that hides some point of the emitter: its offset must lie within the kernel of its own depth. Without
 // this the search averages texels no ray to the light passes, such as a rising floor beside the receiver. A texel of
 // the map covers the smaller a share of the emitter the wider the kernel of its depth; that share is its weight, so that
@@ -56,7 +42,7 @@ int tap_stride(mat2 kernel, int count) {
 
 vec3 technique_visibility(receiver r) {
     vec2 depths;
-    float scale = search_scale(r, depths);
+    float scale = search_scale(r, p_search_reduction, depths);
     vec2 extent = kernel_extent(r, scale) + 1.0;
     receiver_set_bias(r, max(extent.x, extent.y));
     if (p_min_max == 1) {

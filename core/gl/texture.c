@@ -8,8 +8,9 @@ int gl_format_bytes(GLenum format) {
     case GL_RGBA16F:
     case GL_RGBA16_SNORM:
     case GL_RG32F:
+    case GL_RG32UI:
         return 8;
-    default: /* GL_R32F, GL_DEPTH_COMPONENT32F, GL_RG16F */
+    default: /* GL_R32F, GL_R32UI, GL_DEPTH_COMPONENT32F, GL_RG16F */
         return 4;
     }
 }
@@ -60,6 +61,18 @@ pnb_result gl_texture_ensure(const struct gl *gl, struct gl_texture *texture, GL
                              layers > 0 ? layers : 1, (double)bytes / 1048576.0);
     }
     return result;
+}
+
+void gl_texture_set_linear(const struct gl *gl, const struct gl_texture *texture) {
+    const GLenum target = texture_target(texture);
+    gl->BindTexture(target, texture->id);
+    gl->TexParameteri(target, GL_TEXTURE_MIN_FILTER, texture->levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR);
+    gl->TexParameteri(target, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+}
+
+void gl_texture_make_levels(const struct gl *gl, const struct gl_texture *texture) {
+    gl->BindTexture(texture_target(texture), texture->id);
+    gl->GenerateMipmap(texture_target(texture));
 }
 
 void gl_texture_bind(const struct gl *gl, const struct gl_texture *texture, int unit) {

@@ -18,6 +18,10 @@ struct gl_texture {
 pnb_result gl_texture_ensure(const struct gl *gl, struct gl_texture *texture, GLenum format, int width, int height,
                              int layers, int levels);
 void gl_texture_free(const struct gl *gl, struct gl_texture *texture);
+/* Linear filtering within and, if it has levels, between them. */
+void gl_texture_set_linear(const struct gl *gl, const struct gl_texture *texture);
+/* Fills the levels above 0 with means of 2 x 2 texels. */
+void gl_texture_make_levels(const struct gl *gl, const struct gl_texture *texture);
 /* Memory of all levels and layers. */
 uint64_t gl_texture_bytes(const struct gl_texture *texture);
 /* Binds to a texture unit for the current program's sampler. */

@@ -51,6 +51,9 @@ pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
                            struct gl_texture *map);
 /* min_max.c: map -> pyramid, RG32F, S/2 x S/2 x layers with all levels: least and greatest depth. */
 pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struct gl_texture *pyramid);
+/* gauss.c: texture, any float format with a layer per view -> the same, convolved with a Gaussian of 3, 5 or 7 texels
+ * (binomial weights), level 0 only. Beyond the border lie copies of its last row and column. */
+pnb_result pass_gauss(struct frame *frame, struct gl_texture *texture, int width);
 /* visibility.c: G-buffer, map, min_max -> renderer.visibility, by the technique. */
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light);
 /* Uploads the light for the shaders of the passes after it. */

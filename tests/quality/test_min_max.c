@@ -1,71 +1,20 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
  * Shadow maps against depths computed here, the min-max pyramid against minima and maxima taken here, and the promise
  * that the pyramid never changes an image. */
-#include "quality.h"
+#include "pass_bench.h"
 
-#include "gl/backend.h"
 #include "memory.h"
-#include "passes/passes.h"
-#include "render/renderer.h"
-
-/* ---- The passes alone, on this thread ---- */
-
-struct bench {
-    struct backend backend;
-    struct renderer *renderer;
-    struct settings settings;
-    struct scene scene;
-    struct messages messages;
-    struct frame frame;
-};
-
-static bool bench_open(struct bench *bench) {
-    struct backend_choice choice;
-    struct backend_report report;
-    *bench = (struct bench){.settings = {.technique = technique_find("PCSS")}};
-    if (!CHECK_RESULT(backend_choose("", &choice), PNB_OK) ||
-        !CHECK_RESULT(backend_open(&choice, &(struct context_options){0}, &bench->backend, &report), PNB_OK) ||
-        !CHECK_RESULT(renderer_create(&bench->backend.gl, &bench->renderer), PNB_OK))
-        return false;
-    bench->frame = (struct frame){.gl = &bench->backend.gl, .renderer = bench->renderer, .settings = &bench->settings};
-    return true;
-}
-
-static void bench_close(struct bench *bench) {
-    renderer_destroy(&bench->renderer);
-    backend_close(&bench->backend);
-}
-
-/* All layers of a level. */
-static float *read_texture(const struct gl *gl, const struct gl_texture *texture, int level, GLenum format,
-                           int channels) {
-    const size_t side = (size_t)(texture->width >> level);
-    float *pixels = malloc(side * side * (size_t)texture->layers * (size_t)channels * sizeof *pixels);
-    gl_texture_bind(gl, texture, 0);
-    if (pixels)
-        gl->GetTexImage(GL_TEXTURE_2D_ARRAY, level, format, GL_FLOAT, pixels);
-    return pixels;
-}
-
-static uint32_t next_random(uint32_t *state) {
-    *state = *state * 1664525u + 1013904223u;
-    return *state >> 8;
-}
 
 /* A map of random depths, a part of them 0 or 1: the worst there can be for minima and maxima. */
 static void upload_random_map(struct bench *bench, int side, int layers, struct gl_texture *map, float *depths) {
-    const struct gl *gl = &bench->backend.gl;
     uint32_t random = (uint32_t)side;
     const size_t count = (size_t)side * (size_t)side;
-    CHECK_RESULT(gl_texture_ensure(gl, map, GL_DEPTH_COMPONENT32F, side, side, layers, 1), PNB_OK);
+    CHECK_RESULT(gl_texture_ensure(&bench->backend.gl, map, GL_DEPTH_COMPONENT32F, side, side, layers, 1), PNB_OK);
     for (size_t i = 0; i < count * (size_t)layers; i++) {
         const uint32_t x = next_random(&random);
         depths[i] = x % 97 == 0 ? 0.0f : x % 89 == 0 ? 1.0f : (float)x / 16777216.0f;
     }
-    PFNGLTEXSUBIMAGE3DPROC upload =
-        (PFNGLTEXSUBIMAGE3DPROC)bench->backend.lookup(bench->backend.state, "glTexSubImage3D");
-    gl_texture_bind(gl, map, 0);
-    upload(GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, side, side, layers, GL_DEPTH_COMPONENT, GL_FLOAT, depths);
+    upload_texture(bench, map, GL_DEPTH_COMPONENT, depths);
 }
 
 /* Texels of the pyramid that are not exactly the least and greatest depth of the texels below them. Beyond the map's

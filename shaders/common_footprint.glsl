@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far the map coordinate of a receiver moves from pixel to pixel, on the receiver's tangent plane.
+
+// Map coordinate where the ray through a full-image coordinate meets the tangent plane.
+vec2 footprint_point(receiver r, vec2 coordinate) {
+    mat4 to_light = LIGHT_VIEW(r.layer).from_world;
+    vec3 a = (to_light * vec4(camera_position(coordinate, 0.0), 1.0)).xyz;
+    vec3 direction = (to_light * vec4(camera_position(coordinate, 1.0), 1.0)).xyz - a;
+    // Seen edge-on the ray leaves the plane; the footprint is then as long as it can get.
+    float away = dot(r.normal, direction);
+    away = abs(away) < 1e-6 ? -1e-6 : away;
+    vec3 position = a + dot(r.normal, r.position - a) / away * direction;
+    vec2 q = is_perspective() ? position.xy / max(position.z, 1e-6) : position.xy;
+    return (q - LIGHT_VIEW(r.layer).rect.xy) * LIGHT_VIEW(r.layer).rect.zw * vec2(r.map_size);
+}
+
+// Columns: texels per pixel to the right and up.
+mat2 receiver_footprint(receiver r) {
+    vec2 coordinate = camera_pixel(gl_FragCoord.xy);
+    // A tenth of a pixel: over a whole one a grazing ray may miss the plane.
+    vec2 right = footprint_point(r, coordinate + vec2(0.1, 0.0)) - footprint_point(r, coordinate - vec2(0.1, 0.0));
+    vec2 up = footprint_point(r, coordinate + vec2(0.0, 0.1)) - footprint_point(r, coordinate - vec2(0.0, 0.1));
+    return mat2(right * 5.0, up * 5.0);
+}
