@@ -19,7 +19,7 @@ float receiver_depth(receiver r, float depth) {
 struct ellipse {
     vec2 major;   // half the longer axis, texels
     float minor;  // length of the shorter axis, texels, at least 1
-    float length; // of the longer axis
+    float longer; // length of the longer axis, at least 1
 };
 
 // From the eigenvectors of J J^T: J maps the unit circle to an ellipse.
@@ -29,9 +29,9 @@ ellipse footprint_ellipse(mat2 j) {
     float mean = 0.5 * (a + c), spread = sqrt(0.25 * (a - c) * (a - c) + b * b);
     vec2 axis = abs(b) > 1e-12 ? vec2(mean + spread - c, b) : a >= c ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
     ellipse e;
-    e.length = max(sqrt(mean + spread), 1.0);
+    e.longer = max(sqrt(mean + spread), 1.0);
     e.minor = max(sqrt(max(mean - spread, 0.0)), 1.0);
-    e.major = normalize(axis) * 0.5 * e.length;
+    e.major = normalize(axis) * 0.5 * e.longer;
     return e;
 }
 
@@ -44,9 +44,9 @@ float filtered(receiver r, ellipse e) {
     if (p_lookup == LOOKUP_BILINEAR)
         return look_up(r, r.center, 0.0);
     if (p_lookup == LOOKUP_MIP)
-        return look_up(r, r.center, log2(e.length));
-    int count = clamp(int(ceil(e.length / e.minor)), 1, p_anisotropy);
-    float level = log2(max(e.minor, e.length / float(count))), sum = 0.0;
+        return look_up(r, r.center, log2(e.longer));
+    int count = clamp(int(ceil(e.longer / e.minor)), 1, p_anisotropy);
+    float level = log2(max(e.minor, e.longer / float(count))), sum = 0.0;
     for (int i = 0; i < count; i++)
         sum += look_up(r, r.center + e.major * ((2.0 * float(i) + 1.0) / float(count) - 1.0), level);
     return sum / float(count);
@@ -57,7 +57,7 @@ vec2 filter_extent(ellipse e) {
     float convolved = float(p_prefilter);
     if (p_lookup == LOOKUP_BILINEAR)
         return vec2(convolved + 0.5);
-    return p_lookup == LOOKUP_MIP ? vec2(convolved + 0.5 + 0.5 * e.length) : convolved + 0.5 + abs(e.major) + 0.5 * e.minor;
+    return p_lookup == LOOKUP_MIP ? vec2(convolved + 0.5 + 0.5 * e.longer) : convolved + 0.5 + abs(e.major) + 0.5 * e.minor;
 }
 
 // Exponent's growth from texel to texel, on the receiver's tangent plane.
