@@ -105,8 +105,9 @@ class Viewport:
     # ---- Deciding what to render ----
 
     def _schedule(self, context, depsgraph):
-        scene = depsgraph.scene_eval
-        wanted = Wanted(self._version, view.read(context, scene), settings.viewport_key(scene),
+        # A change of our settings does not update the evaluated scene.
+        scene = depsgraph.scene
+        wanted = Wanted(self._version, view.read(context, depsgraph.scene_eval), settings.viewport_key(scene),
                         1.0 / self._engine().get_preview_pixel_size(scene))
         if wanted != self._wanted:
             self._wanted = wanted
@@ -181,7 +182,10 @@ class Viewport:
                 engine.tag_redraw()
             except ReferenceError:  # Blender freed the engine
                 return False
-        return self._run is not None or self._next is not None
+        return not self.is_at_rest()
+
+    def is_at_rest(self):
+        return self._run is None and self._next is None
 
     def _show_status(self):
         engine = self._engine()
@@ -299,6 +303,11 @@ def _wake():
 def _tick():
     busy = [viewport.poll() for viewport in list(_viewports)]
     return _POLL if jobs.sweep() or any(busy) else None
+
+
+def all_at_rest():
+    """Whether every viewport shows the last picture it is going to show."""
+    return all(viewport.is_at_rest() for viewport in _viewports)
 
 
 def unregister():

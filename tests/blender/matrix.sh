@@ -4,13 +4,14 @@ set -euo pipefail
 
 help() {
     cat <<EOT
-Usage: tests/blender/matrix.sh [--only VERSION] BUILD_DIR [TEST...]
+Usage: tests/blender/matrix.sh [--only VERSION] BUILD_DIR [--window] [TEST...]
 Runs the tests of this folder in three Blenders: the system's, and those of Debian trixie (4.3) and sid (5.2) in roots
 of their own, made with debootstrap from the mirror that apt uses and kept in BUILD_DIR/matrix, or in the folder that
 PENUMBRA_CACHE names. A root takes about 2 GB; delete it to make it anew. Needs root. The last line counts all tests.
 
   --only VERSION   system, trixie or sid; may be given several times
   TEST             a module, class or method such as test_render.Sizes
+  --window         only tests that need a window; TEST then is one of them
 EOT
 }
 
@@ -111,7 +112,9 @@ run_version() {
     else
         in_root "$cache/$version" sh /penumbra/source/tests/blender/run.sh /penumbra/build "$@"
     fi 2>&1 | tee "$log" || status=1
-    counts=$(grep -Eo '^[0-9]+ passed, [0-9]+ failed$' "$log" | tail -n 1 || true)
+    # Without and with a window.
+    counts=$(awk '/^[0-9]+ passed, [0-9]+ failed$/ { passed += $1; failed += $3; n++ }
+        END { if (n) print passed " passed, " failed " failed" }' "$log")
     # A run that ends early is a failure, whatever it counted.
     [ -n "$counts" ] || counts="0 passed, 1 failed"
     [ "$status" -eq 0 ] || [[ $counts != *" 0 failed" ]] || counts="${counts%0 failed}1 failed"

@@ -1,11 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# run.sh BUILD_DIR [TEST...]: installs the add-on's zip into an empty Blender profile and runs the tests inside
-# Blender. TEST is a module, class or method such as test_render.Border. BLENDER names the program.
+# run.sh BUILD_DIR [--window] [TEST...]: installs the add-on's zip into an empty Blender profile and runs the tests inside
+# Blender, without a window and then, those of window/, in one on a display of its own. TEST is a module, class or method
+# such as test_render.Border; after --window one of window/, such as test_viewport.Edits. BLENDER names the program.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 build=$(CDPATH= cd -- "$1" && pwd)
 shift
+window=no
+[ "${1-}" != --window ] || { window=only; shift; }
+[ $# -gt 0 ] || [ $window = only ] || window=too
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 blender=${BLENDER:-blender}
@@ -25,4 +29,16 @@ case $("$blender" --version) in
     "$blender" -b --factory-startup --command extension install-file --repo user_default "$zip"
     ;;
 esac
-"$blender" -b --factory-startup --python-exit-code 1 --python "$here/run_tests.py" -- "$@"
+status=0
+if [ $window != only ]; then
+    "$blender" -b --factory-startup --python-exit-code 1 --python "$here/run_tests.py" -- "$@" || status=1
+fi
+if [ $window != no ]; then
+    # Blender with a window always ends with 0: the tests write what they found.
+    mkdir "$work/display"
+    export TEST_DISPLAY="$work/display"
+    xvfb-run -a -s "-screen 0 640x480x24 -nocursor -fbdir $work/display" "$blender" --factory-startup -p 0 0 640 480 \
+        --python "$here/window/run_tests.py" -- "$@"
+    [ "$(cat "$work/output/window-status")" = 0 ] || status=1
+fi
+exit $status

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The rendered viewport shows what F12 renders, and after every edit what a viewport opened afterwards would show."""
+
+import bpy
+
+from harness import add_cube, add_light, white_material
+from window import ViewportTest, psnr, read_picture
+
+
+class Picture(ViewportTest):
+    def test_equals_still(self):
+        """With as many samples; 8 bits and the rounding of half floats in Blender's viewport leave about 50 dB."""
+        self.still_life()
+        bpy.data.objects["Camera"].rotation_euler = 0.5, 0.1, 0.2
+        bpy.data.objects["Camera"].location = 0, -4, 6
+        self.scene.penumbra.samples = self.scene.penumbra.viewport_samples = 8
+        self.scene.penumbra.shadow_map_size = 1024
+        self.look_through_camera()
+        shown = yield from self.shown("viewport")
+        value = psnr(shown, read_picture(self.still("still")))
+        print(f"viewport against still: {value:.1f} dB")
+        self.assertGreaterEqual(value, 40.0)
+
+
+class Edits(ViewportTest):
+    """After each edit the picture has changed, and equals that of a new engine bit by bit."""
+
+    def setUp(self):
+        super().setUp()
+        self.scene.render.preview_pixel_size = '2'      # faster
+        self.still_life()
+        self.look()
+        self.before = None
+
+    def check(self, name):
+        after = yield from self.shown(name)
+        yield from self.start_anew()
+        fresh = yield from self.shown(name + "-fresh")
+        self.assertTrue(after == fresh, f"{name}: stale")
+        if self.before:
+            self.assertFalse(after == self.before, f"{name}: nothing happened")
+        self.before = after
+
+    def push_undo(self, name):
+        with self.window():
+            bpy.ops.ed.undo_push(message=name)
+
+    def test_objects(self):
+        cube = bpy.data.objects["Cube"]
+        yield from self.check("begin")
+        cube.location.x += 1.0
+        yield from self.check("move object")
+        cube.data.vertices[7].co.z += 1.0
+        cube.data.update()
+        yield from self.check("edit mesh")
+        bpy.data.lights["Key"].size = 2.0
+        yield from self.check("lamp size")
+        cube.hide_viewport = True
+        yield from self.check("hide")
+        cube.hide_viewport = False
+        yield from self.check("unhide")
+        cube.hide_set(True)
+        yield from self.check("hide with the eye")
+        cube.hide_set(False)
+        cube.data.materials[0] = white_material("Red", (1.0, 0.0, 0.0))
+        yield from self.check("material")
+        self.scene.penumbra.technique = 'HARD'
+        yield from self.check("technique")
+        bpy.data.objects.remove(bpy.data.objects["Key"])
+        yield from self.check("delete last lamp")
+
+    def test_undo(self):
+        self.push_undo("begin")
+        first = yield from self.shown("undo-first")
+        bpy.data.objects["Cube"].location.x += 1.0
+        bpy.data.objects["Cube"].data.vertices[7].co.z += 1.0
+        self.push_undo("edit")
+        second = yield from self.shown("undo-second")
+        self.assertFalse(first == second)
+        with self.in_viewport():
+            bpy.ops.ed.undo()
+        self.assertTrue(first == (yield from self.shown("undone")))
+        with self.in_viewport():
+            bpy.ops.ed.redo()
+        self.assertTrue(second == (yield from self.shown("redone")))
+
+    def test_frame_change(self):
+        cube = bpy.data.objects["Cube"]
+        cube.keyframe_insert('location', frame=1)
+        cube.location.x += 2.0
+        cube.keyframe_insert('location', frame=20)
+        cube.shape_key_add(name="Basis")
+        key = cube.shape_key_add(name="Tall")
+        key.data[7].co.z += 1.0
+        key.value = 0.0
+        key.keyframe_insert('value', frame=1)
+        key.value = 1.0
+        key.keyframe_insert('value', frame=20)
+        self.scene.frame_set(1)
+        yield from self.check("frame 1")
+        self.scene.frame_set(20)
+        yield from self.check("frame 20")
+
+    def test_collection(self):
+        collection = bpy.data.collections.new("Group")
+        self.scene.collection.children.link(collection)
+        cube = bpy.data.objects["Cube"]
+        collection.objects.link(cube)
+        self.scene.collection.objects.unlink(cube)
+        yield from self.check("linked")
+        bpy.context.view_layer.layer_collection.children["Group"].exclude = True
+        yield from self.check("excluded")
+        bpy.context.view_layer.layer_collection.children["Group"].exclude = False
+        yield from self.check("included")
+
+    def test_new_file(self):
+        yield from self.shown("old file")
+        with self.window():
+            bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        bpy.context.scene.render.engine = 'PENUMBRA'
+        self.show()
+        add_cube()
+        add_light("Sun", 'SUN', energy=2.0)
+        self.look()
+        self.before = None
+        yield from self.check("new file")
+
+    def test_edit_mode(self):
+        cube = bpy.data.objects["Cube"]
+        bpy.context.view_layer.objects.active = cube
+        cube.select_set(True)
+        yield from self.check("object mode")
+        with self.in_viewport():
+            bpy.ops.object.mode_set(mode='EDIT')
+            bpy.ops.mesh.select_all(action='SELECT')
+            bpy.ops.transform.translate(value=(0.0, 0.0, 1.0))
+        yield from self.check("moved in edit mode")
+        with self.in_viewport():
+            bpy.ops.object.mode_set(mode='OBJECT')
+        self.assertTrue(self.before == (yield from self.shown("object mode again")))
