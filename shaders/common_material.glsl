@@ -8,6 +8,7 @@ uniform vec4 emission;   // rgb; a: 1 = holdout
 uniform sampler2D base_color_texture, alpha_texture, emission_texture;
 uniform vec4 texture_use; // x: base_color_texture, y: alpha_texture, z: 1 = alpha is the texture's own, 0 = its grey,
                           // w: emission_texture
+uniform vec4 clearness;   // rgb: share of the light that shines through and is not absorbed; a: 1 = tinted by the texture
 uniform int cull_back;
 flat in int mirrored; // 1: the instance's matrix swaps front and back
 
@@ -21,6 +22,15 @@ vec4 material_color(vec2 uv) {
         color.a *= clamp(texture_use.z != 0.0 ? texel.a : grey, 0.0, 1.0);
     }
     return color;
+}
+
+// What counts as opaque or as nothing at all.
+const float TRANSMITTANCE_OPAQUE = 1.0 / 1024.0, TRANSMITTANCE_CLEAR = 1023.0 / 1024.0;
+
+// Share of the light that passes straight through.
+vec3 material_transmittance(vec2 uv) {
+    vec3 tint = clearness.a != 0.0 ? min(texture(base_color_texture, uv).rgb, vec3(1.0)) : vec3(1.0);
+    return (1.0 - material_color(uv).a) * clearness.rgb * tint;
 }
 
 vec3 material_emission(vec2 uv) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "common_camera.glsl"
 #include "common_material.glsl"
+#include "common_random.glsl"
 
 in vec3 position;
 in vec3 normal;
@@ -13,13 +14,6 @@ layout(location = 2) out vec4 out_color;
 #ifdef EMISSION
 layout(location = 3) out vec4 out_emission;
 #endif
-
-// Random number of a pixel of the full image (Jarzynski and Olano 2020, PCG).
-float pixel_random(uvec2 pixel) {
-    uint v = pixel.x * 1664525u + pixel.y * 22695477u + 1013904223u;
-    v = ((v >> ((v >> 28u) + 4u)) ^ v) * 277803737u;
-    return float((v >> 22u) ^ v) / 4294967296.0;
-}
 
 void main() {
     vec4 color = material_color(uv);

@@ -4,6 +4,9 @@
 #include "common_camera.glsl"
 #include "common_light.glsl"
 #include "common_shadow.glsl"
+#ifdef TRANSLUCENT
+#include "common_fragments.glsl"
+#endif
 
 uniform sampler2D gbuffer_depth, gbuffer_normal;
 uniform vec4 emitter_normal; // xyz: of the emitter's surface at the sample; w: 0 = shines equally everywhere
@@ -19,6 +22,36 @@ float sample_weight(vec3 position, vec3 normal) {
     float facing = emitter_normal.w != 0.0 ? max(-dot(to_light, emitter_normal.xyz), 0.0) : sqrt(d2);
     return max(dot(normal, to_light), 0.0) * facing / max(d2 * d2, 1e-20);
 }
+
+#ifdef TRANSLUCENT
+// Share of the light that passes all translucent surfaces before the receiver at a texel, none if an opaque one hides it.
+vec3 texel_transmittance(receiver r, vec2 coordinate) {
+    float depth;
+    if (blocker_at(r, coordinate, depth))
+        return vec3(0.0);
+    vec2 texel = floor(coordinate);
+    if (any(greaterThanEqual(uvec2(ivec2(texel)), r.map_size)))
+        return vec3(1.0);
+    uint head = 2u * ((uint(r.layer) * r.map_size.y + uint(texel.y)) * r.map_size.x + uint(texel.x));
+    uint first = heads[head], last = first + heads[head + 1u];
+    vec3 transmittance = vec3(1.0);
+    for (uint i = first; i < last; i++)
+        if (is_blocker(r, texel, fragment_depth(i)))
+            transmittance *= 1.0 - fragment_opacity(i);
+    return transmittance;
+}
+
+vec3 transmitted_bilinear(receiver r, vec2 coordinate) {
+    vec2 corner = coordinate - 0.5;
+    vec2 f = fract(corner);
+    return mix(mix(texel_transmittance(r, corner), texel_transmittance(r, corner + vec2(1.0, 0.0)), f.x),
+               mix(texel_transmittance(r, corner + vec2(0.0, 1.0)), texel_transmittance(r, corner + 1.0), f.x), f.y);
+}
+#else
+vec3 transmitted_bilinear(receiver r, vec2 coordinate) {
+    return vec3(1.0 - blocked_bilinear(r, coordinate));
+}
+#endif
 
 void main() {
     vec2 coordinate = camera_pixel(gl_FragCoord.xy);
@@ -46,5 +79,5 @@ void main() {
         return;
     }
     receiver r = receiver_create(position, geometric, layer);
-    out_visibility.rgb *= 1.0 - blocked_bilinear(r, r.center);
+    out_visibility.rgb *= transmitted_bilinear(r, r.center);
 }

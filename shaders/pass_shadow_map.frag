@@ -6,12 +6,29 @@ uniform vec2 depth_planes; // near, far
 
 #ifdef SPECIAL
 #include "common_material.glsl"
+#include "common_random.glsl"
 in vec2 uv;
+
+uniform int translucency; // passes.h: enum translucency
+uniform int sample_index;
+
+// Whether the map keeps a fragment that lets this share of the light through.
+bool is_kept(vec3 transmittance) {
+    float opacity = 1.0 - dot(transmittance, vec3(1.0 / 3.0));
+    if (translucency == 0)
+        return opacity >= 0.5;
+    if (translucency == 2)
+        return all(lessThan(transmittance, vec3(TRANSMITTANCE_OPAQUE)));
+    if (translucency == 3)
+        return any(lessThan(transmittance, vec3(TRANSMITTANCE_CLEAR)));
+    float jitter = fragment_random(uvec2(gl_FragCoord.xy), gl_FragCoord.w + gl_FragCoord.z); // w: 1 without perspective
+    return opacity >= fract(jitter + float(sample_index) * 0.61803399) + 1e-6;
+}
 #endif
 
 void main() {
 #ifdef SPECIAL
-    if (material_color(uv).a < 0.5 || is_culled())
+    if (is_culled() || !is_kept(material_transmittance(uv)))
         discard;
 #endif
 #ifdef PERSPECTIVE

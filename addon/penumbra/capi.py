@@ -6,7 +6,7 @@ import os
 from ctypes import (POINTER, byref, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_uint32, c_uint64,
                     c_void_p, sizeof)
 
-API_VERSION = 2
+API_VERSION = 3
 
 OK, TIMEOUT = 0, 1
 INVALID_ARGUMENT, NO_BACKEND, UNSUPPORTED, OUT_OF_MEMORY, CANCELLED, CONTEXT_LOST = -1, -2, -3, -4, -5, -6
@@ -18,6 +18,7 @@ PERSPECTIVE, ORTHOGRAPHIC = range(2)
 INSTANCE_HIDDEN_FROM_CAMERA, INSTANCE_NO_SHADOW, INSTANCE_NO_RECEIVE, INSTANCE_HOLDOUT = 1, 2, 4, 8
 INSTANCE_SHADOW_CATCHER = 16
 MATERIAL_CULL_CAMERA, MATERIAL_CULL_SHADOW, MATERIAL_HOLDOUT = 1, 2, 4
+MATERIAL_TINTED, MATERIAL_NO_SHADOW, MATERIAL_OPAQUE_SHADOW = 8, 16, 32
 LIGHT_NO_SHADOW, LIGHT_COSINE_SPOT = 1, 2
 PASS_COMBINED, PASS_DEPTH, PASS_NORMAL, PASS_SHADOW, PASS_LIGHT_SHADOWS = 1, 2, 4, 8, 16
 SETTINGS_FILM_TRANSPARENT, SETTINGS_PROGRESSIVE = 1, 2
@@ -69,7 +70,7 @@ class TextureDesc(_Struct):
 class Material(_Struct):
     _fields_ = [("struct_size", c_uint32), ("base_color", c_float * 3), ("transparency", c_float),
                 ("flags", c_uint32), ("base_color_texture", c_void_p), ("alpha_texture", c_void_p),
-                ("emission", c_float * 3), ("reserved", c_uint32), ("emission_texture", c_void_p)]
+                ("emission", c_float * 3), ("absorption", c_float * 3), ("emission_texture", c_void_p)]
 
 
 class Instance(_Struct):

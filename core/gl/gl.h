@@ -27,10 +27,12 @@
     X(PFNGLCLEARPROC, Clear)                                                                                         \
     X(PFNGLCLEARBUFFERFVPROC, ClearBufferfv)                                                                         \
     X(PFNGLCLEARBUFFERUIVPROC, ClearBufferuiv)                                                                       \
+    X(PFNGLCLEARBUFFERSUBDATAPROC, ClearBufferSubData)                                                               \
     X(PFNGLCLEARCOLORPROC, ClearColor)                                                                               \
     X(PFNGLCLIENTWAITSYNCPROC, ClientWaitSync)                                                                       \
     X(PFNGLCOLORMASKPROC, ColorMask)                                                                                 \
     X(PFNGLCOMPILESHADERPROC, CompileShader)                                                                         \
+    X(PFNGLCOPYBUFFERSUBDATAPROC, CopyBufferSubData)                                                                 \
     X(PFNGLCREATEPROGRAMPROC, CreateProgram)                                                                         \
     X(PFNGLCREATESHADERPROC, CreateShader)                                                                           \
     X(PFNGLCULLFACEPROC, CullFace)                                                                                   \

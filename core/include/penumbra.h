@@ -29,7 +29,7 @@
 
 #define PNB_VERSION "0.1.0"
 /* Raised by every change of this header that is not a pure addition. */
-#define PNB_API_VERSION 2u
+#define PNB_API_VERSION 3u
 
 #ifdef PNB_BUILD
 #define PNB_API __attribute__((visibility("default")))
@@ -185,7 +185,10 @@ PNB_API void pnb_texture_destroy(pnb_texture **texture);
 enum pnb_material_flags {
     PNB_MATERIAL_CULL_CAMERA = 1, /* the camera does not see back faces */
     PNB_MATERIAL_CULL_SHADOW = 2, /* back faces, seen from the light, cast no shadow */
-    PNB_MATERIAL_HOLDOUT = 4      /* cuts a hole into the image: 0 with alpha 0 */
+    PNB_MATERIAL_HOLDOUT = 4,     /* cuts a hole into the image: 0 with alpha 0 */
+    PNB_MATERIAL_TINTED = 8,      /* what shines through is multiplied with base_color_texture, too */
+    PNB_MATERIAL_NO_SHADOW = 16,  /* casts no shadow */
+    PNB_MATERIAL_OPAQUE_SHADOW = 32 /* casts shadows as if it were opaque */
 };
 
 typedef struct pnb_material {
@@ -197,7 +200,8 @@ typedef struct pnb_material {
     const pnb_texture *alpha_texture;      /* its alpha channel (or grey, without one) is used; NULL: none */
     float emission[3];                     /* radiance, W/(m2 sr), linear, >= 0, multiplied with the texture: seen by the
                                             * camera, but lights nothing */
-    uint32_t reserved;
+    float absorption[3];                   /* 0..1, the share of each channel that is lost of the light that shines
+                                            * through; 0: clear. What passes is transparency * (1 - absorption) */
     const pnb_texture *emission_texture;   /* NULL: none */
 } pnb_material;
 

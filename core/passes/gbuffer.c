@@ -76,7 +76,7 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     }
     if (result == PNB_OK)
         result = gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA,
-                                &(struct draw_programs){programs[0], programs[1], false, PNB_MATERIAL_CULL_CAMERA});
+                                &(struct draw_programs){programs[0], programs[1], CASTERS_NONE, PNB_MATERIAL_CULL_CAMERA});
     gl->Disable(GL_SCISSOR_TEST);
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +
                                     gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_emission) +

@@ -29,6 +29,7 @@ struct renderer {
     struct gpu_scene *scene;
     struct timer timer;
     GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer, box_buffer, pixel_buffer;
+    GLuint cursor_buffer; /* one number: the end of the fragments, fragment_lists.c */
     struct program_cache programs;
 
     /* G-buffer, of the full image's size: see common_camera.glsl for the contents. */
@@ -46,9 +47,20 @@ struct renderer {
 pnb_result pass_gbuffer(struct frame *frame, bool whole);
 /* bounds.c: gbuffer_depth -> frame->receivers, boxes in relative world space, read back. */
 pnb_result pass_bounds(struct frame *frame);
-/* shadow_map.c: casters -> map, DEPTH_COMPONENT32F, S x S x a layer per view, linear light-space depth 0..1. */
-pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
+/* shadow_map.c: casters -> map, DEPTH_COMPONENT32F, S x S x a layer per view, linear light-space depth 0..1. What of
+ * translucent casters a map keeps: those that hide half of the light or more, or, where samples are averaged, as large a
+ * share of their texels as of the light they hide, others in each sample; nothing but what is opaque; everything. */
+enum translucency { TRANSLUCENCY_CUT, TRANSLUCENCY_STOCHASTIC, TRANSLUCENCY_OPAQUE, TRANSLUCENCY_ANY };
+pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, enum translucency translucency,
                            struct gl_texture *map);
+/* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor clear.
+ * Draws at the size of `map`, which it leaves as it is. what: for messages, names the light. */
+pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
+                               const struct gl_texture *map, const char *what, struct fragment_lists *lists);
+void fragment_lists_bind(const struct gl *gl, const struct fragment_lists *lists);
+void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists);
+/* What every shader that includes common_fragments.glsl needs: whether opacity has a colour. NULL: nothing. */
+const char *fragment_defines(const struct scene *scene);
 /* min_max.c: map -> pyramid, RG32F, S/2 x S/2 x layers with all levels: least and greatest depth. */
 pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struct gl_texture *pyramid);
 /* gauss.c: texture, any float format with a layer per view -> the same, convolved with a Gaussian of 3, 5 or 7 texels

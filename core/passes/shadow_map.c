@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "passes.h"
 
-static pnb_result draw_view(struct frame *frame, const struct light_view *view, const struct gl_texture *map, int layer) {
+static pnb_result draw_view(struct frame *frame, const struct light_view *view, enum translucency translucency,
+                            const struct gl_texture *map, int layer) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
     const struct gl_target target = {.depth = map, .layer = layer};
@@ -25,12 +26,14 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
             return result;
         program_set_mat4(gl, programs[i], "projection", (const float *)clip);
         program_set_vec2(gl, programs[i], "depth_planes", (const float[2]){view->near_depth, view->far_depth});
+        program_set_int(gl, programs[i], "translucency", (int)translucency);
+        program_set_int(gl, programs[i], "sample_index", (int)frame->sample);
     }
     return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW,
-                          &(struct draw_programs){programs[0], programs[1], true, PNB_MATERIAL_CULL_SHADOW});
+                          &(struct draw_programs){programs[0], programs[1], CASTERS_ALL, PNB_MATERIAL_CULL_SHADOW});
 }
 
-pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
+pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, enum translucency translucency,
                            struct gl_texture *map) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
@@ -41,7 +44,7 @@ pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthMask(GL_TRUE);
     for (int i = 0; i < views->count && result == PNB_OK; i++)
-        result = draw_view(frame, &views->views[i], map, i);
+        result = draw_view(frame, &views->views[i], translucency, map, i);
     timer_end(&renderer->timer, gl_texture_bytes(map));
     return result;
 }

@@ -3,6 +3,7 @@
 #ifndef PNB_FRAME_H
 #define PNB_FRAME_H
 
+#include "../gl/buffer.h"
 #include "../gl/texture.h"
 #include "job.h"
 #include "light.h"
@@ -17,6 +18,12 @@ struct camera_block {
     vec4 window; /* left, bottom, width, height of the full image at distance 1 or in metres */
     vec4 image;  /* full width and height, lower left pixel of the crop */
     float perspective, sample_index, sample_count, padding;
+};
+
+/* The fragments of casters, as lists in order of depth for every texel of a light's views (common_fragments.glsl). */
+struct fragment_lists {
+    struct gl_buffer heads, fragments;
+    uint32_t count; /* fragments in all lists */
 };
 
 /* Textures a technique may make of one light's shadow map. */

@@ -19,8 +19,9 @@ struct draw {
 struct gpu_material {
     vec4 base_color; /* rgb, alpha */
     vec4 emission;   /* rgb, 1 = holdout */
+    vec4 clearness;  /* rgb, 1 = tinted by base_color_texture */
     const struct gpu_image *base_color_texture, *alpha_texture, *emission_texture;
-    bool alpha_is_grey, transparent, textured;
+    bool alpha_is_grey, transparent, translucent, textured;
     uint32_t flags;
 };
 
@@ -92,6 +93,8 @@ static pnb_result load_materials(struct gpu_scene *scene, const struct scene *fr
         material->base_color[3] = source->alpha;
         glm_vec3_copy((float *)source->emission, material->emission);
         material->emission[3] = source->flags & PNB_MATERIAL_HOLDOUT ? 1.0f : 0.0f;
+        if (!(source->flags & PNB_MATERIAL_OPAQUE_SHADOW))
+            glm_vec4((float *)source->clearness, material_is_tinted(source) ? 1.0f : 0.0f, material->clearness);
         material->flags = source->flags;
         pnb_result result = PNB_OK;
         if (source->base_color_texture)
@@ -104,6 +107,7 @@ static pnb_result load_materials(struct gpu_scene *scene, const struct scene *fr
             return result;
         material->alpha_is_grey = source->alpha_texture && !source->alpha_texture->has_alpha;
         material->transparent = source->alpha < 1.0f || source->alpha_texture;
+        material->translucent = material_is_translucent(source);
         material->textured = source->base_color_texture || source->alpha_texture || source->emission_texture;
     }
     return PNB_OK;
@@ -246,6 +250,7 @@ static void bind_material(const struct gl *gl, GLuint program, const struct gpu_
     if (!special)
         return;
     program_set_int(gl, program, "cull_back", (material->flags & cull) != 0);
+    program_set_vec4(gl, program, "clearness", material->clearness);
     const vec4 use = {material->base_color_texture ? 1.0f : 0.0f, material->alpha_texture ? 1.0f : 0.0f,
                       material->alpha_is_grey ? 0.0f : 1.0f, material->emission_texture ? 1.0f : 0.0f};
     program_set_vec4(gl, program, "texture_use", use);
@@ -259,6 +264,19 @@ static void bind_material(const struct gl *gl, GLuint program, const struct gpu_
         gl->ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
         gl->BindTexture(GL_TEXTURE_2D, image ? image->texture : 0);
     }
+}
+
+/* Whether a pass draws a material at all, and whether with the program for special ones. */
+static bool is_drawn(const struct gpu_material *material, const struct draw_programs *programs) {
+    if (programs->casters != CASTERS_NONE && (material->flags & PNB_MATERIAL_NO_SHADOW))
+        return false;
+    return programs->casters != CASTERS_TRANSLUCENT || material->translucent;
+}
+
+static bool is_special(const struct gpu_material *material, const struct draw_programs *programs) {
+    const bool see_through = programs->casters == CASTERS_NONE ? material->transparent || material->textured
+                                                               : material->translucent;
+    return see_through || (material->flags & programs->cull);
 }
 
 static bool is_same_call(const struct draw *a, const struct draw *b) {
@@ -286,11 +304,12 @@ pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hid
         GLsizei instances = 0;
         for (; i < scene->draw_count && is_same_call(draw, &scene->draws[i]); i++)
             instances += culled[scene->draws[i].instance] ? 0 : 1;
-        if (instances == 0)
-            continue;
         const struct gpu_material *material = &scene->materials[draw->material];
-        const bool special = material->transparent || (material->flags & programs->cull) ||
-                             (material->textured && !programs->alpha_matters_only);
+        const uint32_t first = base;
+        base += (uint32_t)instances;
+        if (instances == 0 || !is_drawn(material, programs))
+            continue;
+        const bool special = is_special(material, programs);
         const GLuint program = special ? programs->special : programs->plain;
         if (program != current)
             gl->UseProgram(program);
@@ -299,8 +318,7 @@ pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hid
         gl->BindVertexArray(draw->mesh->vertex_array);
         gl->DrawElementsInstancedBaseInstance(GL_TRIANGLES, (GLsizei)draw->range->index_count, GL_UNSIGNED_INT,
                                               (const void *)(uintptr_t)(draw->range->first_index * sizeof(uint32_t)),
-                                              instances, base);
-        base += (uint32_t)instances;
+                                              instances, first);
     }
     memory_free(culled);
     return gl_check(gl, "drawing the scene");

@@ -17,10 +17,14 @@ pnb_result gpu_scene_update(struct gpu_scene *scene, struct frame *frame);
 /* Bytes of OpenGL memory it holds. */
 uint64_t gpu_scene_bytes(const struct gpu_scene *scene);
 
-/* Programs for materials that are one opaque colour and for all others; uniforms of the pass are set beforehand. */
+/* What a pass draws: what the camera sees, every material that casts shadows, or those that light shines through. */
+enum casters { CASTERS_NONE, CASTERS_ALL, CASTERS_TRANSLUCENT };
+
+/* Programs for materials that are one opaque colour and for all others; uniforms of the pass are set beforehand. A pass
+ * over casters needs `special` only for what light shines through. */
 struct draw_programs {
     GLuint plain, special;
-    bool alpha_matters_only; /* depth passes: `special` only where a material has holes */
+    enum casters casters;
     uint32_t cull;           /* the enum pnb_material_flags that hides back faces in this pass */
 };
 

@@ -18,8 +18,8 @@ pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
     gl->GenFramebuffers(1, &renderer->framebuffer);
     gl->GenVertexArrays(1, &renderer->empty_vertex_array);
     GLuint *const buffers[] = {&renderer->camera_buffer, &renderer->light_buffer, &renderer->tap_buffer,
-                               &renderer->box_buffer,    &renderer->pixel_buffer};
-    for (int i = 0; i < 5; i++)
+                               &renderer->box_buffer,    &renderer->pixel_buffer, &renderer->cursor_buffer};
+    for (int i = 0; i < 6; i++)
         gl->GenBuffers(1, buffers[i]);
     pnb_result result = gpu_scene_create(gl, &renderer->scene);
     if (result == PNB_OK)
@@ -43,8 +43,8 @@ void renderer_destroy(struct renderer **out) {
     gl->DeleteFramebuffers(1, &renderer->framebuffer);
     gl->DeleteVertexArrays(1, &renderer->empty_vertex_array);
     const GLuint buffers[] = {renderer->camera_buffer, renderer->light_buffer, renderer->tap_buffer, renderer->box_buffer,
-                              renderer->pixel_buffer};
-    gl->DeleteBuffers(5, buffers);
+                              renderer->pixel_buffer,  renderer->cursor_buffer};
+    gl->DeleteBuffers(6, buffers);
     struct gl_texture *const textures[] = {
         &renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color, &renderer->gbuffer_z,
         &renderer->visibility,    &renderer->combined,       &renderer->shadowed,      &renderer->unshadowed,
@@ -88,10 +88,16 @@ static uint64_t light_bytes(const struct frame *frame, const struct frame_light 
     return side * side * (4 * 2 + frame->settings->technique->prefilter_bytes) * (uint64_t)light->views.count;
 }
 
+static enum translucency map_translucency(const struct frame *frame) {
+    if (frame->settings->technique->needs & NEEDS_ALL_CASTERS)
+        return TRANSLUCENCY_ANY;
+    return frame->settings->samples > 1 ? TRANSLUCENCY_STOCHASTIC : TRANSLUCENCY_CUT;
+}
+
 static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *light) {
     if (light->views.count == 0 || frame->settings->technique->draw)
         return PNB_OK;
-    pnb_result result = pass_shadow_map(frame, &light->views, &light->shadow_map);
+    pnb_result result = pass_shadow_map(frame, &light->views, map_translucency(frame), &light->shadow_map);
     if (result == PNB_OK && (frame->settings->technique->needs & NEEDS_MIN_MAX))
         result = pass_min_max(frame, &light->shadow_map, &light->min_max);
     if (result == PNB_OK && frame->settings->technique->prefilter)
@@ -150,6 +156,16 @@ static pnb_result show_samples(struct frame *frame) {
     return result == PNB_OK ? job_publish(frame->job, done) : result;
 }
 
+/* Maps are kept over the samples, unless each sample has its own part of what is translucent. */
+static pnb_result draw_sample_maps(struct frame *frame, uint32_t first, uint32_t last) {
+    pnb_result result = PNB_OK;
+    if (frame->sample == 0 || !frame->scene->translucent || map_translucency(frame) != TRANSLUCENCY_STOCHASTIC)
+        return PNB_OK;
+    for (uint32_t i = first; i < last && result == PNB_OK; i++)
+        result = draw_shadow_maps(frame, &frame->lights[i]);
+    return result;
+}
+
 /* Every sample of the lights first .. last - 1, whose maps are in memory. */
 static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t last) {
     pnb_result result = PNB_OK;
@@ -162,6 +178,8 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
             result = pass_shading(frame, NULL, true);
         if (result == PNB_OK && first == 0 && frame->sample == 0)
             result = pass_resolve_first_sample(frame);
+        if (result == PNB_OK)
+            result = draw_sample_maps(frame, first, last);
         for (uint32_t i = first; i < last && result == PNB_OK; i++)
             result = draw_light(frame, i);
         if (result == PNB_OK && first == 0 && last == frame->scene->light_count)
@@ -181,6 +199,7 @@ static pnb_result draw_frame(struct frame *frame) {
     const uint32_t count = frame->scene->light_count;
     for (uint32_t first = 0; (first < count || first == 0) && result == PNB_OK;) {
         uint32_t last = first;
+        frame->sample = 0;
         for (uint64_t bytes = 0; last < count && result == PNB_OK; last++) {
             bytes += light_bytes(frame, &frame->lights[last]);
             if (bytes > SHADOW_MAP_BUDGET && last > first)

@@ -24,6 +24,7 @@ static const struct field material_fields_table[] = {
     FIELD(pnb_material, transparency),
     FIELD(pnb_material, flags),
     FIELD(pnb_material, emission),
+    FIELD(pnb_material, absorption),
 };
 FIELD_LIST(material_fields);
 

@@ -12,7 +12,9 @@
 
 /* ---- Materials and slots ---- */
 
-static const struct scene_material default_material = {.base_color = {0.8f, 0.8f, 0.8f}, .alpha = 1};
+static const struct scene_material default_material = {.base_color = {0.8f, 0.8f, 0.8f},
+                                                       .alpha = 1,
+                                                       .clearness = {1, 1, 1}};
 
 /* False: a channel was not usable and became 0. */
 static bool color_resolve(const float from[3], float to[3]) {
@@ -25,16 +27,24 @@ static bool color_resolve(const float from[3], float to[3]) {
     return good;
 }
 
+/* 1 - share. False: it was not within 0..1 and was clamped, NaN to 0. */
+static bool complement_resolve(float share, float *to) {
+    bool usable = share >= 0 && share <= 1;
+    *to = usable ? 1 - share : share > 1 ? 0.0f : 1.0f;
+    return usable;
+}
+
 static void material_resolve(const pnb_material *from, uint32_t index, struct messages *messages,
                              struct scene_material *to) {
     *to = default_material;
     to->flags = from->flags;
     bool good = color_resolve(from->base_color, to->base_color);
     good = color_resolve(from->emission, to->emission) && good;
-    float transparency = from->transparency;
-    bool usable = transparency >= 0 && transparency <= 1;
-    to->alpha = usable ? 1 - transparency : transparency > 1 ? 0.0f : 1.0f;
-    if (!good || !usable) {
+    good = complement_resolve(from->transparency, &to->alpha) && good;
+    for (int i = 0; i < 3; i++) {
+        good = complement_resolve(from->absorption[i], &to->clearness[i]) && good;
+    }
+    if (!good) {
         messages_add(messages, "material %" PRIu32 ": its colour or transparency is out of range and was clamped",
                      index);
     }
@@ -50,6 +60,16 @@ static void material_resolve(const pnb_material *from, uint32_t index, struct me
     }
 }
 
+/* What the scene's materials are like together. */
+static void note_traits(const struct scene_material *material, struct scene *scene) {
+    const float *emission = material->emission, *clear = material->clearness;
+    scene->emissive = scene->emissive || emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
+    if (material_is_translucent(material)) {
+        scene->translucent = true;
+        scene->colored = scene->colored || material_is_tinted(material) || clear[0] != clear[1] || clear[1] != clear[2];
+    }
+}
+
 static pnb_result copy_materials(const pnb_scene *from, struct messages *messages, struct scene *to) {
     to->materials = memory_array((size_t)from->material_count + 1, sizeof *to->materials);
     if (!to->materials) {
@@ -57,8 +77,7 @@ static pnb_result copy_materials(const pnb_scene *from, struct messages *message
     }
     for (uint32_t i = 0; i < from->material_count; i++) {
         material_resolve(&from->materials[i], i, messages, &to->materials[i]);
-        const float *emission = to->materials[i].emission;
-        to->emissive = to->emissive || emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
+        note_traits(&to->materials[i], to);
     }
     to->materials[from->material_count] = default_material;
     to->material_count = from->material_count + 1;

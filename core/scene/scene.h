@@ -60,9 +60,22 @@ struct scene_instance {
 
 struct scene_material {
     float base_color[3], alpha, emission[3];
+    float clearness[3];               /* 1 - absorption */
     uint32_t flags;
     pnb_texture *base_color_texture, *alpha_texture, *emission_texture; /* retained, or NULL */
 };
+
+/* Whether a base colour texture tints what shines through. */
+static inline bool material_is_tinted(const struct scene_material *material) {
+    return (material->flags & PNB_MATERIAL_TINTED) && material->base_color_texture;
+}
+
+/* Whether it casts a shadow that some light shines through. */
+static inline bool material_is_translucent(const struct scene_material *material) {
+    const float *clear = material->clearness;
+    return (material->alpha < 1 || material->alpha_texture) && (clear[0] > 0 || clear[1] > 0 || clear[2] > 0) &&
+           !(material->flags & (PNB_MATERIAL_NO_SHADOW | PNB_MATERIAL_OPAQUE_SHADOW));
+}
 
 /* pnb_light with every default filled in, degenerate sizes clamped, and finite numbers; members that do not belong
  * to its type are 0. The axes are linearly independent. An AREA is at least SCENE_MIN_EMITTER wide and high in the
@@ -97,6 +110,8 @@ struct scene {
     float world_color[3];
     bool emissive;                    /* some material emits */
     bool catches_shadows;             /* some instance is a shadow catcher */
+    bool translucent;                 /* some material lets light through to what it shadows */
+    bool colored;                     /* and tints it */
 };
 
 /* Copies and checks. What cannot be used is dropped or clamped with a message that names it; only broken

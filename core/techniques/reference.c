@@ -53,14 +53,21 @@ static void emitter_at(const struct emitter *emitter, int i, int j, int n, struc
     }
 }
 
+/* What a light sample sees of the casters: the nearest that is opaque, and all that light shines through. */
+struct sample_maps {
+    struct gl_texture opaque;
+    struct fragment_lists translucent;
+};
+
 /* Adds one light sample to the visibility sums. */
 static pnb_result add_sample(struct frame *frame, const struct emitter *point, const struct light_views *views,
-                             const vec4 normal, const struct gl_texture *map) {
+                             const vec4 normal, const struct sample_maps *maps) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = frame->gl;
     const struct program_desc desc = {.vertex = "pass_screen.vert",
                                       .fragment = "pass_reference.frag",
-                                      .defines = {light_defines(point, views)}};
+                                      .defines = {light_defines(point, views), fragment_defines(frame->scene),
+                                                  maps->translucent.count > 0 ? "#define TRANSLUCENT\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK)
@@ -74,7 +81,9 @@ static pnb_result add_sample(struct frame *frame, const struct emitter *point, c
     gl->BlendFunc(GL_ONE, GL_ONE);
     bind_gbuffer(renderer, program);
     if (views->count > 0)
-        gl_texture_bind(gl, map, 3);
+        gl_texture_bind(gl, &maps->opaque, 3);
+    if (maps->translucent.count > 0)
+        fragment_lists_bind(gl, &maps->translucent);
     program_set_int(gl, program, "shadow_map", 3);
     program_set_vec4(gl, program, "emitter_normal", normal);
     program_set_int(gl, program, "uniform_weights", frame->settings->parameters[WEIGHTS] > 0.0);
@@ -84,7 +93,7 @@ static pnb_result add_sample(struct frame *frame, const struct emitter *point, c
 }
 
 static pnb_result draw_sample(struct frame *frame, const struct emitter *emitter, int i, int j, int n,
-                              struct gl_texture *map) {
+                              struct sample_maps *maps) {
     struct emitter point;
     struct light_views views;
     vec4 normal;
@@ -92,12 +101,17 @@ static pnb_result draw_sample(struct frame *frame, const struct emitter *emitter
     light_views_fit(&views, &point, frame->coarse_receivers, frame->coarse_receiver_count, frame->casters,
                     frame->caster_count, (int)frame->settings->shadow_map_size);
     pnb_result result = PNB_OK;
-    if (views.count > 0 && emitter->casts_shadow)
-        result = pass_shadow_map(frame, &views, map);
+    const bool shadows = views.count > 0 && emitter->casts_shadow;
+    maps->translucent.count = 0;
+    if (shadows)
+        result = pass_shadow_map(frame, &views, TRANSLUCENCY_OPAQUE, &maps->opaque);
+    if (result == PNB_OK && shadows && frame->scene->translucent)
+        result = pass_fragment_lists(frame, &views, CASTERS_TRANSLUCENT, &maps->opaque, "translucent surfaces",
+                                     &maps->translucent);
     if (result != PNB_OK)
         return result;
     light_block_upload(frame->renderer, &point, &views);
-    return add_sample(frame, &point, &views, normal, map);
+    return add_sample(frame, &point, &views, normal, maps);
 }
 
 static pnb_result reference_draw(struct frame *frame, const struct frame_light *light) {
@@ -108,17 +122,18 @@ static pnb_result reference_draw(struct frame *frame, const struct frame_light *
     if (result != PNB_OK)
         return result;
     gl->ClearBufferfv(GL_COLOR, 0, zero);
-    struct gl_texture map = {0};
+    struct sample_maps maps = {0};
     const int n = (int)frame->settings->light_samples;
     for (int i = 0; i < n * n && result == PNB_OK; i++) {
-        result = draw_sample(frame, &light->emitter, i % n, i / n, n, &map);
+        result = draw_sample(frame, &light->emitter, i % n, i / n, n, &maps);
         if (result == PNB_OK && i % 8 == 7) {
             gl->Finish();
             if (job_is_cancelled(frame->job))
                 result = error_set(PNB_ERROR_CANCELLED, "the render was cancelled");
         }
     }
-    gl_texture_free(gl, &map);
+    gl_texture_free(gl, &maps.opaque);
+    fragment_lists_free(gl, &maps.translucent);
     return result;
 }
 

@@ -15,7 +15,10 @@ struct parameter {
 };
 
 /* What the shared passes must prepare of each shadow map before the technique's visibility pass. */
-enum technique_needs { NEEDS_MIN_MAX = 1 };
+enum technique_needs {
+    NEEDS_MIN_MAX = 1,     /* the pyramid of least and greatest depth */
+    NEEDS_ALL_CASTERS = 2  /* the map holds the nearest fragment, however transparent */
+};
 
 struct technique {
     const char *id, *label, *description, *paper;

@@ -218,6 +218,12 @@ static void bad_materials(void) {
     ROW(PNB_OK, "material 1", material->transparency = -1);
     ROW(PNB_OK, "", material->transparency = 1);
     ROW(PNB_OK, "", material->transparency = 0.5f; room.settings.samples = 3);
+    ROW(PNB_OK, "material 1", material->transparency = 1; material->absorption[1] = NAN);
+    ROW(PNB_OK, "material 1", material->transparency = 1; material->absorption[2] = 2);
+    ROW(PNB_OK, "", material->transparency = 1; material->absorption[0] = 1; room.settings.samples = 2);
+    ROW(PNB_OK, "", material->flags = PNB_MATERIAL_TINTED);
+    ROW(PNB_OK, "", material->flags = PNB_MATERIAL_NO_SHADOW | PNB_MATERIAL_TINTED);
+    ROW(PNB_OK, "", material->flags = PNB_MATERIAL_OPAQUE_SHADOW | PNB_MATERIAL_CULL_SHADOW);
     ROW(PNB_OK, "slot 1", room.slots[1] = 2);
     ROW(PNB_OK, "slot 1", room.slots[1] = UINT32_MAX);
     ROW(PNB_OK, "slot", room.scene.material_count = 0);

@@ -134,6 +134,12 @@ static inline bool scene_has_own_lights(const char *name) {
     return strcmp(name, "all-lights") == 0;
 }
 
+/* Kinds of light to try a scene under. Those with translucent casters, which not every technique shows, have a test of
+ * their own. */
+static inline int scene_light_kinds(const struct test_scene_info *info) {
+    return info->translucent ? 0 : scene_has_own_lights(info->name) ? 1 : TEST_LIGHT_COUNT;
+}
+
 /* World position of a pixel's surface, by the depth pass. */
 static inline void render_position(const struct render *render, const pnb_camera *camera, const pnb_settings *settings,
                                    uint32_t x, uint32_t y, double position[3]) {

@@ -141,7 +141,8 @@ int main(int count, char **arguments) {
     printf("\n");
     const struct test_scene_info *info;
     for (uint32_t i = 0; (info = test_scene_info(i)); i++)
-        table_row(info->name, TEST_LIGHT_RECTANGLE, samples, height, count == 1);
+        if (count > 1 || !info->translucent) /* those have a test of their own */
+            table_row(info->name, TEST_LIGHT_RECTANGLE, samples, height, count == 1);
     /* The other kinds of light, on one scene. */
     for (int light = TEST_LIGHT_ELLIPSE; light < TEST_LIGHT_COUNT; light++)
         table_row("stairs", (enum test_light)light, samples, height, false);

@@ -120,7 +120,7 @@ static void maps_hold_linear_depth(struct bench *bench, int side, bool perspecti
     glm_mat4_identity(views.views[0].from_world);
     struct gl_texture map = {0};
     CHECK_RESULT(gpu_scene_update(bench->renderer->scene, &bench->frame), PNB_OK);
-    CHECK_RESULT(pass_shadow_map(&bench->frame, &views, &map), PNB_OK);
+    CHECK_RESULT(pass_shadow_map(&bench->frame, &views, TRANSLUCENCY_CUT, &map), PNB_OK);
     float *depths = read_texture(&bench->backend.gl, &map, 0, GL_DEPTH_COMPONENT, 1);
     int missed = 0;
     const double error = depths ? map_error(&views.views[0], depths, side, &missed) : INFINITY;
@@ -166,7 +166,7 @@ static void skip_changes_nothing(void) {
     const struct test_scene_info *info;
     int renders = 0, different = 0;
     for (uint32_t i = 0; (info = test_scene_info(i)); i++)
-        for (int light = 0; light < (scene_has_own_lights(info->name) ? 1 : TEST_LIGHT_COUNT); light++) {
+        for (int light = 0; light < scene_light_kinds(info); light++) {
             const uint32_t map_size = (i + (uint32_t)light) % 3 == 0 ? 1000 : 512;
             const int pixels = skip_changes_pixels(info->name, (enum test_light)light, map_size);
             if (!CHECK_INT(pixels, 0))

@@ -42,7 +42,7 @@ static void values_are_shares(void) {
         const struct test_scene_info *scene;
         int renders = 0, shadowed = 0, bad = 0;
         for (uint32_t i = 0; (scene = test_scene_info(i)); i++)
-            for (int light = 0; light < (scene_has_own_lights(scene->name) ? 1 : TEST_LIGHT_COUNT); light++) {
+            for (int light = 0; light < scene_light_kinds(scene); light++) {
                 float lowest;
                 const int here = bad_in_scene(scene->name, (enum test_light)light, info.id, &lowest);
                 if (!CHECK_INT(here, 0))

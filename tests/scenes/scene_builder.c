@@ -33,6 +33,8 @@ void builder_init(struct scene_builder *builder, const struct test_scene_options
 void builder_free(struct scene_builder *builder) {
     for (uint32_t i = 0; i < builder->mesh_count; i++)
         pnb_mesh_destroy(&builder->meshes[i]);
+    for (uint32_t i = 0; i < builder->texture_count; i++)
+        pnb_texture_destroy(&builder->textures[i]);
 }
 
 const pnb_mesh *builder_mesh(struct scene_builder *builder, struct shape *shape, const char *name) {

@@ -9,6 +9,7 @@
 #define BUILDER_MAX_INSTANCES 4096
 #define BUILDER_MAX_MESHES    64
 #define BUILDER_MAX_MATERIALS 16
+#define BUILDER_MAX_TEXTURES  16
 #define BUILDER_MAX_LIGHTS    64
 
 struct scene_builder {
@@ -19,7 +20,8 @@ struct scene_builder {
     pnb_material materials[BUILDER_MAX_MATERIALS];
     uint32_t slots[BUILDER_MAX_MATERIALS]; /* slot i is material i */
     pnb_light lights[BUILDER_MAX_LIGHTS];
-    uint32_t mesh_count;
+    pnb_texture *textures[BUILDER_MAX_TEXTURES];
+    uint32_t mesh_count, texture_count;
     pnb_scene scene;
     pnb_settings settings;
 };

@@ -2,6 +2,7 @@
 #include "test_scenes.h"
 
 #include "scene_builder.h"
+#include "translucent_scenes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -314,26 +315,32 @@ struct test_scene_row {
 };
 
 static const struct test_scene_row rows[] = {
-    {{"half-plane", "straight edge above a floor; shadow boundary at x = 0", "height of the edge, m", 1},
+    {{"half-plane", "straight edge above a floor; shadow boundary at x = 0", "height of the edge, m", 1, 0},
      build_half_plane},
-    {{"ball", "sphere of radius 0.5 above a floor", "height of its centre, m", 1.5f}, build_ball},
-    {{"hover", "disc close above a floor: contact shadows", "height, m", 0.1f}, build_hover},
-    {{"slot", "gap between two edges", "width of the gap, m", 0.2f}, build_slot},
-    {{"discs", "two equal discs above each other: overlapping occluders", "horizontal distance, m", 0.3f}, build_discs},
-    {{"slats", "crossing slats at several heights: light bleeding", "number of slats", 2}, build_slats},
-    {{"perforated", "sheet with fine square holes", "holes per side", 16}, build_perforated},
-    {{"slanted-sheet", "occluder that reaches from near the floor towards the light", "tilt, degrees", 55},
+    {{"ball", "sphere of radius 0.5 above a floor", "height of its centre, m", 1.5f, 0}, build_ball},
+    {{"hover", "disc close above a floor: contact shadows", "height, m", 0.1f, 0}, build_hover},
+    {{"slot", "gap between two edges", "width of the gap, m", 0.2f, 0}, build_slot},
+    {{"discs", "two equal discs above each other: overlapping occluders", "horizontal distance, m", 0.3f, 0}, build_discs},
+    {{"slats", "crossing slats at several heights: light bleeding", "number of slats", 2, 0}, build_slats},
+    {{"perforated", "sheet with fine square holes", "holes per side", 16, 0}, build_perforated},
+    {{"slanted-sheet", "occluder that reaches from near the floor towards the light", "tilt, degrees", 55, 0},
      build_slanted_sheet},
-    {{"plane", "empty floor under a tilted light: acne", "angle between normal and light, degrees", 60}, build_plane},
-    {{"sphere", "sphere on a floor: terminator", NULL, 0}, build_sphere},
-    {{"box", "box standing on a floor: contact", "its height, m", 1}, build_box},
-    {{"fence", "picket fence in front of the light: thin occluders", "width of a picket, m", 0.05f}, build_fence},
-    {{"stairs", "receiver with steps under a bar", "depth of a step, m", 0.3f}, build_stairs},
-    {{"lantern", "small occluder below a large one, in a cage", "number of bars", 8}, build_lantern},
-    {{"tall-box", "tall box under a light larger than it", "width of the light, m", 1.2f}, build_tall_box},
-    {{"cubes", "many small floating cubes", "number of cubes", 1000}, build_cubes},
-    {{"benchmark", "about 40,000 triangles: rings, spheres, columns, boxes", NULL, 0}, build_benchmark},
-    {{"all-lights", "sphere and box under one light of each kind", NULL, 0}, build_all_lights},
+    {{"plane", "empty floor under a tilted light: acne", "angle between normal and light, degrees", 60, 0}, build_plane},
+    {{"sphere", "sphere on a floor: terminator", NULL, 0, 0}, build_sphere},
+    {{"box", "box standing on a floor: contact", "its height, m", 1, 0}, build_box},
+    {{"fence", "picket fence in front of the light: thin occluders", "width of a picket, m", 0.05f, 0}, build_fence},
+    {{"stairs", "receiver with steps under a bar", "depth of a step, m", 0.3f, 0}, build_stairs},
+    {{"lantern", "small occluder below a large one, in a cage", "number of bars", 8, 0}, build_lantern},
+    {{"tall-box", "tall box under a light larger than it", "width of the light, m", 1.2f, 0}, build_tall_box},
+    {{"cubes", "many small floating cubes", "number of cubes", 1000, 0}, build_cubes},
+    {{"benchmark", "about 40,000 triangles: rings, spheres, columns, boxes", NULL, 0, 0}, build_benchmark},
+    {{"glass", "overlapping panes of red, green and blue glass, and a ball", "width of the light, m", 1, 1}, build_glass},
+    {{"panes", "stacked panes of glass", "number of panes", 4, 1}, build_panes},
+    {{"alpha-fence", "fence by an alpha texture, near to the floor and far from it", "its side, m", 2, 1},
+     build_alpha_fence},
+    {{"foliage", "leaves by an alpha texture, through which light shines", "number of leaves", 150, 1}, build_foliage},
+    {{"layers", "sheets above each other that let 0.3 of the light through", "number of sheets", 8, 1}, build_layers},
+    {{"all-lights", "sphere and box under one light of each kind", NULL, 0, 0}, build_all_lights},
 };
 
 const struct test_scene_info *test_scene_info(uint32_t index) {

@@ -22,6 +22,7 @@ struct test_scene_info {
     const char *name, *description;
     const char *parameter; /* what options.parameter means, with its unit; NULL: nothing */
     float parameter_default;
+    int translucent;       /* 1: its casters let light through */
 };
 
 /* NULL beyond the last scene. */

@@ -284,7 +284,7 @@ static void foreign_files_are_refused(void **state) {
     longer[4] = CAPTURE_VERSION + 1;
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
-    assert_error("format version 3");
+    assert_error("format version 4");
     memcpy(longer, "BLENDER-v304RENDH", 17);
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
