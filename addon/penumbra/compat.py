@@ -17,6 +17,9 @@ SUN_IS_FLAT_DISK = not BLENDER_4
 
 # Inputs of the Principled shader that were renamed.
 PRINCIPLED_EMISSION = 'Emission Color' if BLENDER_4 else 'Emission'
+PRINCIPLED_TRANSMISSION = 'Transmission Weight' if BLENDER_4 else 'Transmission'
+# Each of the two surfaces of a body of glass tints by its base colour, since 4.0 both together.
+TRANSMISSION_EXPONENT = 0.5 if BLENDER_4 else 1.0
 
 # Panels of other engines that fit this one too.
 ADOPTED_PANELS = ('EEVEE_MATERIAL_PT_context_material', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface')
@@ -98,6 +101,17 @@ def uses_nodes(owner):
 def culls_backfaces(material):
     """(for the camera, for shadows)."""
     return material.use_backface_culling, getattr(material, 'use_backface_culling_shadow', False)
+
+
+def casts_no_shadow(material):
+    """By EEVEE's shadow mode of Blender 3.4."""
+    return getattr(material, 'shadow_method', 'OPAQUE') == 'NONE'
+
+
+def casts_opaque_shadow(material):
+    """Transparency can be left out of shadows: a setting of Cycles, since 4.2 of the material."""
+    return not all(getattr(owner, 'use_transparent_shadow', True)
+                   for owner in (material, getattr(material, 'cycles', None)))
 
 
 def view_layer_overrides(view_layer):

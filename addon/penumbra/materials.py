@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Material -> pnb_material: base colour, emission and alpha, each a value and an image."""
+"""Material -> pnb_material: base colour, emission and alpha, each a value and an image, and what shines through."""
 
 from dataclasses import dataclass, field
 
@@ -17,6 +17,8 @@ class Surface:
     alpha: float = 1.0
     alpha_image: object = None
     alpha_use: str = textures.ALPHA
+    clear: list = field(default_factory=lambda: [1.0] * 3)  # colour of what shines through
+    is_tinted: bool = False                                 # and by color_image, too
     is_holdout: bool = False
 
     def has_images(self):
@@ -32,12 +34,16 @@ def fill_material(target, material, texture, warnings):
         target.base_color_texture = texture(surface.color_image, textures.COLOR)
     if surface.alpha_image:
         target.alpha_texture = texture(surface.alpha_image, surface.alpha_use)
+    target.absorption[:] = [1.0 - min(max(channel, 0.0), 1.0) for channel in surface.clear]
     target.emission[:] = surface.emission
     if surface.emission_image:
         target.emission_texture = texture(surface.emission_image, textures.COLOR)
     camera, shadow = compat.culls_backfaces(material)
-    target.flags = ((capi.MATERIAL_CULL_CAMERA if camera else 0) | (capi.MATERIAL_CULL_SHADOW if shadow else 0)
-                    | (capi.MATERIAL_HOLDOUT if surface.is_holdout else 0))
+    flags = {capi.MATERIAL_CULL_CAMERA: camera, capi.MATERIAL_CULL_SHADOW: shadow,
+             capi.MATERIAL_HOLDOUT: surface.is_holdout, capi.MATERIAL_TINTED: surface.is_tinted,
+             capi.MATERIAL_NO_SHADOW: compat.casts_no_shadow(material),
+             capi.MATERIAL_OPAQUE_SHADOW: compat.casts_opaque_shadow(material)}
+    target.flags = sum(flag for flag, is_set in flags.items() if is_set)
 
 
 def read_surface(material, warnings):
@@ -59,7 +65,7 @@ class _Reader:
             return Surface(color=[0.0] * 3)
         node = source.output.node
         if node.type == 'BSDF_TRANSPARENT':
-            return Surface(alpha=0.0)
+            return self.transparent(source)
         if node.type == 'HOLDOUT':
             return Surface(is_holdout=True)
         if node.type == 'MIX_SHADER':
@@ -71,6 +77,12 @@ class _Reader:
             self.emission(source, 'Color', 'Strength', surface)
             return surface
         return self.scattering(source)
+
+    def transparent(self, source):
+        surface = Surface(alpha=0.0)
+        surface.clear, surface.color_image = self.color(source.input('Color'), [1.0] * 3)
+        surface.is_tinted = bool(surface.color_image)
+        return surface
 
     def scattering(self, source):
         """A surface that reflects light, by what it has in common with a diffuse one."""
@@ -87,7 +99,21 @@ class _Reader:
             self.emission(source, compat.PRINCIPLED_EMISSION, 'Emission Strength', surface)
         if 'Alpha' in node.inputs:
             self.alpha(source.input('Alpha'), surface)
+        if compat.PRINCIPLED_TRANSMISSION in node.inputs:
+            self.transmission(source, surface)
         return surface
+
+    def transmission(self, source, surface):
+        """Light that a Principled surface refracts goes straight on, in the surface's colour."""
+        share = nodes.constant(source.input(compat.PRINCIPLED_TRANSMISSION), 0.0)
+        if not isinstance(share, float) or share <= 0.0:
+            return
+        share, alpha = min(share, 1.0), surface.alpha
+        surface.alpha = alpha * (1.0 - share)
+        surface.is_tinted = bool(surface.color_image)
+        surface.clear = [(1.0 - alpha + alpha * share * max(channel, 0.0) ** compat.TRANSMISSION_EXPONENT)
+                         / (1.0 - surface.alpha) for channel in surface.color]
+        self.warn("light passes straight through its transmission, without refraction")
 
     def emission(self, source, color, strength, surface):
         factor = nodes.constant(source.input(strength), 1.0)
@@ -120,6 +146,9 @@ class _Reader:
         transparent = first.alpha == 0.0
         if weight is None and transparent and not second.alpha_image:
             second.alpha_image, second.alpha_use = self.image(factor)
+            second.clear = first.clear
+            if first.is_tinted:
+                self.warn("an image that tints what shines through counts only without an image of alpha")
             return second
         if weight is None:
             self.warn("shaders are mixed by nodes only from Transparent and by an image; half of each is taken")
@@ -140,6 +169,9 @@ class _Reader:
             else:
                 heavier.color = [a + (b - a) * share for a, b in zip(first.color, second.color)]
                 heavier.emission = [a + (b - a) * share for a, b in zip(first.emission, second.emission)]
+        passing = [(1.0 - weight) * (1.0 - first.alpha) * a + weight * (1.0 - second.alpha) * b
+                   for a, b in zip(first.clear, second.clear)]
+        heavier.clear = [channel / (1.0 - alpha) for channel in passing] if alpha < 1.0 else [1.0] * 3
         heavier.alpha = alpha
         return heavier
 
