@@ -37,7 +37,7 @@ def draw_message(region, message):
     y = 0.5 * region.height + 0.5 * len(lines) * 1.4 * size
     blf.enable(_FONT, blf.SHADOW)
     blf.shadow(_FONT, 5, 0.0, 0.0, 0.0, 1.0)
-    blf.color(_FONT, 1.0, 0.35, 0.2, 1.0)
+    blf.color(_FONT, 1.0, 0.5, 0.2, 1.0)
     for line in lines:
         width, _height = blf.dimensions(_FONT, line)
         y -= 1.4 * size

@@ -23,16 +23,20 @@ class Picture(NamedTuple):
         return Picture(width, height, b''.join(rows))
 
 
-def read():
+def dump():
     with open(os.path.join(os.environ['TEST_DISPLAY'], 'Xvfb_screen0'), 'rb') as file:
-        dump = file.read()
-    header_size, _version, _format, _depth, width, height = struct.unpack('>6I', dump[:24])
-    bits, stride = struct.unpack('>2I', dump[44:52])
-    colors = struct.unpack('>I', dump[76:80])[0]
+        return file.read()
+
+
+def read():
+    data = dump()
+    header_size, _version, _format, _depth, width, height = struct.unpack('>6I', data[:24])
+    bits, stride = struct.unpack('>2I', data[44:52])
+    colors = struct.unpack('>I', data[76:80])[0]
     if bits != 32:
         raise ValueError(f"the display has {bits} bits per pixel")
     start = header_size + 12 * colors
-    pixels = b''.join(dump[start + row * stride:start + row * stride + 4 * width] for row in range(height))
+    pixels = b''.join(data[start + row * stride:start + row * stride + 4 * width] for row in range(height))
     rgb = bytearray(3 * width * height)
     for channel in range(3):
         rgb[channel::3] = pixels[2 - channel::4]    # stored blue, green, red, unused

@@ -93,12 +93,15 @@ class ViewportTest(SceneTest):
             self.area().tag_redraw()
             yield 'draw'
         yield from wait_until(viewport.all_at_rest, "viewports to come to rest")
-        yield 'draw'
-        yield 'draw'
+        before = None
+        while before != display.dump():     # what was drawn last reaches the display later
+            before = display.dump()
+            for _ in range(5):
+                yield 'draw'
 
-    def screenshot(self, name):
-        """The viewport's part of the display; also kept as a file to look at."""
-        region = self.region()
+    def screenshot(self, name, region=None):
+        """The viewport's part of the display, or another region's; also kept as a file to look at."""
+        region = region or self.region()
         picture = display.read().cut(region.x, region.y, region.width, region.height)
         picture.save(output(name + '.ppm'))
         return picture

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where a viewport looks, what part of it is rendered, and what it says when it cannot."""
+
+import bpy
+import mathutils
+from bpy_extras.view3d_utils import location_3d_to_region_2d
+
+from harness import ADDON, add_camera, add_light, add_world
+from window import ViewportTest, psnr, read_picture
+
+from penumbra import capi, view, viewport
+
+POINTS = [(0.0, 0.0, 0.0), (1.0, 0.5, 0.2), (-0.7, 1.1, 0.9), (0.3, -1.2, -0.5)]
+
+
+def pixel(seen, point):
+    """Where the library's camera sees a point."""
+    matrix = mathutils.Matrix([seen.matrix[row::4] for row in range(4)])
+    x, y, z = (matrix.inverted() @ mathutils.Vector((*point, 1.0))).xyz
+    if seen.projection == capi.PERSPECTIVE:
+        x, y = x / -z, y / -z
+    left, right, bottom, top = seen.window
+    return (x - left) / (right - left) * seen.width, (y - bottom) / (top - bottom) * seen.height
+
+
+class Matrices(ViewportTest):
+    """The library sees every point at the pixel where Blender shows it."""
+
+    def setUp(self):
+        super().setUp()
+        self.still_life()
+
+    def check(self, name):
+        yield from self.settle()
+        with self.in_viewport():
+            seen = view.read(bpy.context, self.scene)
+        for point in POINTS:
+            wanted = location_3d_to_region_2d(self.region(), self.region_3d(), point)
+            found = mathutils.Vector(pixel(seen, point))
+            # Single-precision matrices over 640 pixels.
+            self.assertLess((found - wanted).length, 0.02, f"{name}: {found} instead of {wanted}")
+        self.assertGreater(seen.clip_end, seen.clip_start)
+        self.assertGreater(seen.clip_start, 0.0)
+
+    def test_views(self):
+        region_3d = self.region_3d()
+        self.look()
+        yield from self.check("perspective")
+        region_3d.view_perspective = 'ORTHO'
+        yield from self.check("orthographic")
+        camera = bpy.data.objects["Camera"]
+        camera.location, camera.rotation_euler = (0.5, -5.0, 5.0), (0.7, 0.1, 0.2)
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 200, 300
+        self.scene.render.pixel_aspect_x = 1.5
+        region_3d.view_perspective = 'CAMERA'
+        for zoom, offset, shift, kind in ((0.0, (0.0, 0.0), (0.0, 0.0), 'PERSP'),
+                                          (12.0, (0.1, -0.05), (0.2, 0.1), 'PERSP'),
+                                          (-8.0, (-0.1, 0.07), (-0.1, 0.3), 'ORTHO')):
+            region_3d.view_camera_zoom, region_3d.view_camera_offset = zoom, offset
+            camera.data.shift_x, camera.data.shift_y = shift
+            camera.data.type = kind
+            yield from self.check(f"camera {zoom} {offset} {shift} {kind}")
+
+
+class Regions(ViewportTest):
+    def setUp(self):
+        super().setUp()
+        self.still_life()
+        self.look()
+
+    def test_orthographic_equals_still(self):
+        """A view from above is one of an orthographic camera; see test_equals_still for the limit."""
+        region_3d = self.region_3d()
+        region_3d.view_perspective = 'ORTHO'
+        region_3d.view_rotation = 1.0, 0.0, 0.0, 0.0
+        shown = yield from self.shown("orthographic")
+        left, right, _bottom, _top = self.read_view().window
+        bpy.data.objects.remove(bpy.data.objects["Camera"])
+        add_camera(type='ORTHO', ortho_scale=right - left)
+        render = self.scene.render
+        render.resolution_x, render.resolution_y = shown.width, shown.height
+        self.scene.penumbra.samples = self.scene.penumbra.viewport_samples
+        self.assertGreaterEqual(psnr(shown, read_picture(self.still("orthographic-still"))), 40.0)
+
+    def read_view(self):
+        with self.in_viewport():
+            return view.read(bpy.context, self.scene)
+
+    def check_border(self, whole, part, bounds):
+        """Inside as without border, nothing outside; beside the dashes of Blender's own outline."""
+        left, right, bottom, top = bounds
+        x, y = int(left * whole.width + 0.5), int(bottom * whole.height + 0.5)
+        width, height = int(right * whole.width + 0.5) - x, int(top * whole.height + 0.5) - y
+        inside = x + 2, y + 2, width - 4, height - 4
+        # At most a rounding of the position at which the picture is drawn.
+        self.assertGreaterEqual(psnr(part.cut(*inside), whole.cut(*inside)), 60.0)
+        for outside in ((0, 0, whole.width, y - 2), (0, 0, x - 2, whole.height),
+                        (x + width + 2, 0, whole.width - x - width - 2, whole.height)):
+            self.assertLessEqual(len(set(part.cut(*outside).rgb)), 60, "more than a background's gradient")
+            self.assertNotEqual(part.cut(*outside), whole.cut(*outside))
+
+    def test_border_of_region(self):
+        whole = yield from self.shown("whole")
+        space = self.space()
+        space.use_render_border = True
+        space.render_border_min_x, space.render_border_max_x = 0.25, 0.75
+        space.render_border_min_y, space.render_border_max_y = 0.25, 0.75
+        self.check_border(whole, (yield from self.shown("part")), (0.25, 0.75, 0.25, 0.75))
+
+    def test_border_of_camera(self):
+        self.look_through_camera()
+        whole = yield from self.shown("whole")
+        render = self.scene.render
+        render.use_border = True
+        render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = 0.25, 0.75, 0.25, 0.75
+        self.check_border(whole, (yield from self.shown("part")), (0.25, 0.75, 0.25, 0.75))
+
+    def test_quad_view(self):
+        add_world((0.2, 0.3, 0.4))
+        add_light("Sun", 'SUN', rotation=(0.9, 0.3, 0.0), energy=2.0)
+        with self.in_viewport():
+            bpy.ops.screen.region_quadview()
+        yield from self.settle()
+        regions = [region for region in self.area().regions if region.type == 'WINDOW']
+        self.assertEqual(len(regions), 4)
+        pictures = [self.screenshot(f"quad-{number}", region) for number, region in enumerate(regions)]
+        for number, picture in enumerate(pictures):
+            background, lit = picture.rgb[:3], picture.rgb[3 * (picture.width * picture.height // 2 + picture.width // 2):]
+            self.assertNotEqual(background, lit[:3], f"region {number} shows nothing in its middle")
+        self.assertEqual(len({picture.rgb for picture in pictures}), 4)
+
+    def test_resize(self):
+        large = yield from self.shown("large")
+        with self.in_viewport():
+            bpy.ops.screen.screen_full_area(use_hide_panels=True)
+        small = yield from self.shown("small")
+        self.assertLess(small.width, large.width)
+        yield from self.start_anew()
+        self.assertTrue(small == (yield from self.shown("small-fresh")))
+
+    def test_local_view(self):
+        cube = bpy.data.objects["Cube"]
+        whole = yield from self.shown("global")
+        cube.select_set(True)
+        bpy.context.view_layer.objects.active = cube
+        with self.in_viewport():
+            bpy.ops.view3d.localview(frame_selected=False)
+        local = yield from self.shown("local")
+        self.assertFalse(local == whole)
+        with self.in_viewport():
+            bpy.ops.view3d.localview(frame_selected=False)
+        self.assertTrue(whole == (yield from self.shown("global again")))
+
+    def test_at_rest_nothing_runs(self):
+        yield from self.settle()
+        self.assertFalse(bpy.app.timers.is_registered(viewport._tick))
+
+    def test_error(self):
+        """It is told in the viewport, and gone with its cause."""
+        good = yield from self.shown("good")
+        preferences = bpy.context.preferences.addons[ADDON].preferences
+        self.addCleanup(setattr, preferences, 'backend', preferences.backend)
+        before, preferences.backend = preferences.backend, 'nosuch'
+        bad = yield from self.shown("error")
+        self.assertFalse(bad == good)
+        preferences.backend = before
+        self.assertTrue(good == (yield from self.shown("good again")))
