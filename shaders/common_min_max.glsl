@@ -14,9 +14,10 @@ vec4 depth_range_cover(receiver r, vec2 extent) {
     return vec4((ivec4(low, high) >> level) + ivec4(0, 0, 1, 1)) * float(1 << level);
 }
 
-// Least and greatest light-space depth of the texels in the rectangle center +- extent; 1e30 outside the map.
+// Least and greatest light-space depth of the texels in the rectangle center +- (extent + spread); 1e30 outside the map.
 vec2 depth_range(receiver r, vec2 extent) {
     vec2 size = vec2(r.map_size);
+    extent += r.spread;
     vec2 low = r.center - extent, high = r.center + extent;
     bool inside = all(greaterThanEqual(low, vec2(0.0))) && all(lessThan(high, size));
     vec2 side = high - low;

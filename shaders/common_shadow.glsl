@@ -9,6 +9,7 @@ struct receiver {
     vec3 position;    // light space of its view, metres
     vec3 normal;      // geometric, light space
     vec2 center;      // map coordinate
+    vec2 spread;      // half sides, in texels, of the rectangle of receivers it stands for; 0 but in pass_classify.comp
     mat2 kernel;      // the emitter's half axes on the map, in texels per unit of kernel_scale
     vec2 slope;       // height of the receiver's tangent plane: is_blocker
     float level;
@@ -65,26 +66,36 @@ void receiver_set_bias(inout receiver r, float kernel_radius) {
     r.limit = r.position.z - 1e-6 * rounding;
 }
 
-receiver receiver_create(vec3 world_position, vec3 world_normal, int layer) {
+// A receiver of light-space position and normal, without its kernel.
+receiver receiver_on_map(vec3 position, vec3 normal, int layer) {
     receiver r;
     light_view view = LIGHT_VIEW(layer);
-    mat3 to_light = mat3(view.from_world);
     r.layer = layer;
     r.map_size = uvec2(textureSize(shadow_map, 0).xy);
     r.near_depth = view.near_depth;
     r.depth_span = view.far_depth - view.near_depth;
     r.texel_size = view.texel;
-    r.position = (view.from_world * vec4(world_position, 1.0)).xyz;
-    r.normal = to_light * world_normal;
-    vec2 q = is_perspective() ? r.position.xy / r.position.z : r.position.xy;
+    r.position = position;
+    r.normal = normal;
+    vec2 q = is_perspective() ? position.xy / position.z : position.xy;
     vec2 scale = view.rect.zw * vec2(r.map_size); // texels per unit of q
     r.center = (q - view.rect.xy) * scale;
+    r.spread = vec2(0.0);
+    // dot(normal.xy, q) at the centre of texel t is dot(slope, t) + level.
+    r.slope = normal.xy / scale;
+    r.level = dot(r.slope, vec2(0.5)) + dot(normal.xy, view.rect.xy) + (is_perspective() ? normal.z : 0.0);
+    receiver_set_bias(r, 0.0);
+    return r;
+}
+
+receiver receiver_create(vec3 world_position, vec3 world_normal, int layer) {
+    light_view view = LIGHT_VIEW(layer);
+    mat3 to_light = mat3(view.from_world);
+    receiver r = receiver_on_map((view.from_world * vec4(world_position, 1.0)).xyz, to_light * world_normal, layer);
+    vec2 q = is_perspective() ? r.position.xy / r.position.z : r.position.xy;
+    vec2 scale = view.rect.zw * vec2(r.map_size);
     mat2 axes = emitter_axes(r.position, q, to_light);
     r.kernel = mat2(axes[0] * scale, axes[1] * scale);
-    // dot(normal.xy, q) at the centre of texel t is dot(slope, t) + level.
-    r.slope = r.normal.xy / scale;
-    r.level = dot(r.slope, vec2(0.5)) + dot(r.normal.xy, view.rect.xy) + (is_perspective() ? r.normal.z : 0.0);
-    receiver_set_bias(r, 0.0);
     return r;
 }
 

@@ -5,7 +5,10 @@
 #ifdef LIGHT_TYPE
 #include "common_light.glsl"
 #include "common_irradiance.glsl"
-uniform sampler2D visibility;
+uniform sampler2D visibility; // rgb = visibility times weight, a = weight
+#endif
+#ifdef TILES
+flat in float tile_visibility; // 0.5: the texture's
 #endif
 
 uniform sampler2D gbuffer_depth, gbuffer_normal, gbuffer_color;
@@ -22,6 +25,18 @@ layout(location = 4) out vec4 out_visibility; // of this light
 layout(location = 5) out vec4 out_caught;     // irradiance of a shadow catcher; a: its coverage
 layout(location = 6) out vec4 out_uncaught;   // irradiance
 
+#ifdef LIGHT_TYPE
+// rgb: visibility; a: 0 where the light does not reach.
+vec4 light_visibility(vec3 position, vec3 normal, bool receives) {
+    vec4 v = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0);
+#ifdef TILES
+    if (tile_visibility != 0.5)
+        v = light_reaches(position, normal) ? vec4(vec3(receives ? tile_visibility : 1.0), 1.0) : vec4(0.0);
+#endif
+    return v;
+}
+#endif
+
 void main() {
     vec2 coordinate = camera_pixel(gl_FragCoord.xy);
     ivec2 pixel = ivec2(coordinate); // in the G-buffer
@@ -34,10 +49,11 @@ void main() {
     bool covered = depth != 0.0;
     vec3 radiance = vec3(0.0), irradiance = vec3(0.0), visible = vec3(1.0);
 #ifdef LIGHT_TYPE
-    vec4 v = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0);
+    vec3 position = camera_position(coordinate, depth);
+    vec4 v = light_visibility(position, normal, depth > 0.0);
     if (covered && v.a > 0.0) {
         visible = v.rgb / v.a;
-        irradiance = light.emission.rgb * light_irradiance(camera_position(coordinate, depth), normal);
+        irradiance = light.emission.rgb * light_irradiance(position, normal);
         radiance = color / PI * irradiance * visible;
     }
 #endif

@@ -4,9 +4,14 @@
 #include "common_taps.glsl"
 
 uniform int p_search_reduction;
-uniform int p_min_max;
 uniform int p_blocker_average;
 const int AREA_AVERAGE = 0;
+
+// Half sides of the rectangle that holds every tap.
+vec2 technique_extent(receiver r) {
+    vec2 depths;
+    return kernel_extent(r, search_scale(r, p_search_reduction, depths)) + 1.0;
+}
 
 // Counts a texel that hides some point of the emitter: its offset must lie within the kernel of its own depth. Without
 // this the search averages texels no ray to the light passes, such as a rising floor beside the receiver. A texel of
@@ -45,11 +50,6 @@ vec3 technique_visibility(receiver r) {
     float scale = search_scale(r, p_search_reduction, depths);
     vec2 extent = kernel_extent(r, scale) + 1.0;
     receiver_set_bias(r, max(extent.x, extent.y));
-    if (p_min_max == 1) {
-        float known = classify(r, extent, depths);
-        if (known != 0.5)
-            return vec3(known);
-    }
     mat2 kernel = kernel_at(r, scale);
     vec2 reach = kernel_extent(r, 1.0);
     vec2 sum = vec2(0.0);

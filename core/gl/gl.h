@@ -84,6 +84,7 @@
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                                                                             \
     X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                                                                         \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                                                                             \
+    X(PFNGLPOINTSIZEPROC, PointSize)                                                                                 \
     X(PFNGLREADBUFFERPROC, ReadBuffer)                                                                               \
     X(PFNGLREADPIXELSPROC, ReadPixels)                                                                               \
     X(PFNGLSAMPLERPARAMETERFPROC, SamplerParameterf)                                                                 \

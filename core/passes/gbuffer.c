@@ -20,8 +20,7 @@ static pnb_result ensure_gbuffer(struct renderer *renderer, int width, int heigh
     if (!emissive)
         gl_texture_free(renderer->gl, &renderer->gbuffer_emission);
     for (int i = emissive ? 0 : 1; i < 5; i++) {
-        pnb_result result =
-            gl_texture_ensure(renderer->gl, parts[i].texture, parts[i].format, width, height, 0, 1);
+        pnb_result result = gl_texture_ensure(renderer->gl, parts[i].texture, parts[i].format, width, height, 0, 1);
         if (result != PNB_OK)
             return result;
     }
@@ -44,10 +43,10 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "G-buffer")) != PNB_OK)
         return result;
     upload_camera(renderer, &frame->camera);
-    const struct gl_target target = {
-        .colors = {&renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color, &renderer->gbuffer_emission},
-        .color_count = emissive ? 4 : 3,
-        .depth = &renderer->gbuffer_z};
+    const struct gl_target target = {.colors = {&renderer->gbuffer_depth, &renderer->gbuffer_normal,
+                                                &renderer->gbuffer_color, &renderer->gbuffer_emission},
+                                     .color_count = emissive ? 4 : 3,
+                                     .depth = &renderer->gbuffer_z};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
     if (!whole)
@@ -75,11 +74,13 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
             program_set_mat4(gl, programs[i], "projection", (const float *)clip);
     }
     if (result == PNB_OK)
-        result = gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA,
-                                &(struct draw_programs){programs[0], programs[1], CASTERS_NONE, PNB_MATERIAL_CULL_CAMERA});
+        result =
+            gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA,
+                           &(struct draw_programs){programs[0], programs[1], CASTERS_NONE, PNB_MATERIAL_CULL_CAMERA});
     gl->Disable(GL_SCISSOR_TEST);
-    timer_end(&renderer->timer, gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +
-                                    gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_emission) +
-                                    gl_texture_bytes(&renderer->gbuffer_z));
+    timer_end(&renderer->timer,
+              gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +
+                  gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_emission) +
+                  gl_texture_bytes(&renderer->gbuffer_z));
     return result;
 }

@@ -28,14 +28,16 @@ struct renderer {
     const struct gl *gl;
     struct gpu_scene *scene;
     struct timer timer;
-    GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer, box_buffer, pixel_buffer;
+    GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer;
+    GLuint box_buffer, tile_buffer, tile_visibility_buffer, tile_vertex_array;
     GLuint cursor_buffer; /* one number: the end of the fragments, fragment_lists.c */
     struct program_cache programs;
 
     /* G-buffer, of the full image's size: see common_camera.glsl for the contents. */
     struct gl_texture gbuffer_depth, gbuffer_normal, gbuffer_color, gbuffer_z;
     struct gl_texture gbuffer_emission; /* exists only while something emits */
-    struct gl_texture visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
+    struct gl_texture
+        visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
     /* Sums over the samples, RGBA32F, W x H. */
     struct gl_texture combined, shadowed, unshadowed, normal;
     /* Of the shadow catchers alone, if there are any: irradiance with the ambient light's; caught.a = coverage. */
@@ -45,16 +47,22 @@ struct renderer {
 
 /* gbuffer.c: scene -> gbuffer_* of the frame's sample; whole: all of the full image, else only the crop. */
 pnb_result pass_gbuffer(struct frame *frame, bool whole);
-/* bounds.c: gbuffer_depth -> frame->receivers, boxes in relative world space, read back. */
-pnb_result pass_bounds(struct frame *frame);
+/* tiles.c: G-buffer -> box_buffer, tile_buffer: bounds of what each tile of the full image shows, relative world. */
+pnb_result pass_tiles(struct frame *frame);
+/* box_buffer -> frame->receivers and coarse_receivers. */
+pnb_result read_receivers(struct frame *frame);
+/* Tiles, min_max, planes -> tile_visibility_buffer: 0, 1 or undecided, for a technique with `technique_extent`. */
+pnb_result pass_classify(struct frame *frame, const struct frame_light *light);
+/* Draws the tiles, or those that are undecided, over the bound target with the current program. */
+void draw_tiles(struct frame *frame, GLuint program, bool undecided_only);
 /* shadow_map.c: casters -> map, DEPTH_COMPONENT32F, S x S x a layer per view, linear light-space depth 0..1. What of
- * translucent casters a map keeps: those that hide half of the light or more, or, where samples are averaged, as large a
- * share of their texels as of the light they hide, others in each sample; nothing but what is opaque; everything. */
+ * translucent casters a map keeps: those that hide half of the light or more, or, where samples are averaged, as large
+ * a share of their texels as of the light they hide, others in each sample; nothing but what is opaque; everything. */
 enum translucency { TRANSLUCENCY_CUT, TRANSLUCENCY_STOCHASTIC, TRANSLUCENCY_OPAQUE, TRANSLUCENCY_ANY };
 pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, enum translucency translucency,
                            struct gl_texture *map);
-/* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor clear.
- * Draws at the size of `map`, which it leaves as it is. what: for messages, names the light. */
+/* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor
+ * clear. Draws at the size of `map`, which it leaves as it is. what: for messages, names the light. */
 pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
                                const struct gl_texture *map, const char *what, struct fragment_lists *lists);
 void fragment_lists_bind(const struct gl *gl, const struct fragment_lists *lists);
@@ -66,8 +74,11 @@ pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struc
 /* gauss.c: texture, any float format with a layer per view -> the same, convolved with a Gaussian of 3, 5 or 7 texels
  * (binomial weights), level 0 only. Beyond the border lie copies of its last row and column. */
 pnb_result pass_gauss(struct frame *frame, struct gl_texture *texture, int width);
-/* visibility.c: G-buffer, map, min_max -> renderer.visibility, by the technique. */
-pnb_result pass_visibility(struct frame *frame, const struct frame_light *light);
+/* planes.c: light->shadow_map -> light->planes, RGBA32F, a texel per 4 x 4 texels with all levels: see
+ * common_planes.glsl. Needs the light's block. */
+pnb_result pass_planes(struct frame *frame, struct frame_light *light);
+/* visibility.c: G-buffer, map, min_max -> renderer.visibility, by the technique; tiles: of undecided ones only. */
+pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, bool tiles);
 /* Uploads the light for the shaders of the passes after it. */
 void light_block_upload(struct renderer *renderer, const struct emitter *emitter, const struct light_views *views);
 /* #define lines for the shaders of a pass over one light: its type, outline and number of views as constants, since a
@@ -75,6 +86,8 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
 const char *light_defines(const struct emitter *emitter, const struct light_views *views);
 /* What the technique's row defines for its shader; NULL: nothing. */
 const char *technique_defines(const struct settings *settings);
+/* Gives the current program the light's maps and the technique's parameters, taps and own textures. */
+void bind_technique(struct frame *frame, const struct frame_light *light, GLuint program);
 /* Sets the technique's parameters as uniforms `p_<name>` of the current program. */
 void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings);
 /* Binds gbuffer_depth, _normal and _color as the current program's samplers. */
@@ -82,9 +95,10 @@ void bind_gbuffer(struct renderer *renderer, GLuint program);
 /* Sets the current program's `world`: background and ambient radiance; a: 0 = transparent film. */
 void set_world(struct frame *frame, GLuint program);
 /* shading.c: makes the sums; adds to them one light's radiance and irradiance, and with the first one of a sample what
- * needs no light: background, ambient light and normal. light NULL: nothing but that. */
+ * needs no light: background, ambient light and normal. light NULL: nothing but that. tiles: visibility is that of the
+ * tile where it is decided. */
 pnb_result pass_prepare_sums(struct frame *frame);
-pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bool first);
+pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bool first, bool tiles);
 /* resolve.c: makes the job's images; fills what is wanted of the first sample alone (depth); sums -> images. */
 pnb_result pass_create_images(struct frame *frame);
 pnb_result pass_resolve_first_sample(struct frame *frame);

@@ -65,12 +65,13 @@ static const struct gl_texture *if_made(const struct gl_texture *texture) {
     return texture->id ? texture : NULL;
 }
 
-static pnb_result use_program(struct frame *frame, const struct frame_light *light, bool first, GLuint *program) {
+static pnb_result use_program(struct frame *frame, const struct frame_light *light, bool first, bool tiles,
+                              GLuint *program) {
     const char *const first_define = frame->scene->emissive ? "#define FIRST\n#define EMISSION\n" : "#define FIRST\n";
-    const struct program_desc desc = {
-        .vertex = "pass_screen.vert",
-        .fragment = "pass_shading.frag",
-        .defines = {light ? light_defines(&light->emitter, &light->views) : NULL, first ? first_define : NULL}};
+    const struct program_desc desc = {.vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
+                                      .fragment = "pass_shading.frag",
+                                      .defines = {light ? light_defines(&light->emitter, &light->views) : NULL,
+                                                  first ? first_define : NULL, tiles ? "#define TILES\n" : NULL}};
     return program_use(&frame->renderer->programs, &desc, program);
 }
 
@@ -81,11 +82,11 @@ void set_world(struct frame *frame, GLuint program) {
     program_set_vec4(frame->gl, program, "world", value);
 }
 
-pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bool first) {
+pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bool first, bool tiles) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
     GLuint program;
-    pnb_result result = use_program(frame, light, first, &program);
+    pnb_result result = use_program(frame, light, first, tiles, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Shading")) != PNB_OK)
         return result;
     const struct gl_texture *share = light ? if_made(&renderer->light_shadows[light - frame->lights]) : NULL;
@@ -103,7 +104,10 @@ pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bo
     gl_texture_bind(gl, &renderer->visibility, 3);
     program_set_int(gl, program, "visibility", 3);
     set_world(frame, program);
-    draw_screen(renderer);
+    if (tiles)
+        draw_tiles(frame, program, false);
+    else
+        draw_screen(renderer);
     timer_end(&renderer->timer, sums_bytes(renderer) + (share ? gl_texture_bytes(share) : 0));
     return gl_check(gl, "shading");
 }

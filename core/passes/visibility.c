@@ -32,7 +32,8 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
 
 void bind_gbuffer(struct renderer *renderer, GLuint program) {
     static const char *const names[] = {"gbuffer_depth", "gbuffer_normal", "gbuffer_color"};
-    const struct gl_texture *textures[] = {&renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color};
+    const struct gl_texture *textures[] = {&renderer->gbuffer_depth, &renderer->gbuffer_normal,
+                                           &renderer->gbuffer_color};
     for (int i = 0; i < 3; i++) {
         gl_texture_bind(renderer->gl, textures[i], i);
         program_set_int(renderer->gl, program, names[i], i);
@@ -74,7 +75,7 @@ static void upload_taps(struct frame *frame, GLuint program, bool ellipse) {
     const struct gl *gl = frame->gl;
     struct taps taps = {0};
     frame->settings->technique->taps(frame->settings->parameters, ellipse, frame->sample, frame->settings->samples,
-                                         &taps);
+                                     &taps);
     gl->BindBuffer(GL_UNIFORM_BUFFER, frame->renderer->tap_buffer);
     gl->BufferData(GL_UNIFORM_BUFFER, sizeof taps.search + sizeof taps.filter, &taps, GL_STREAM_DRAW);
     gl->BindBufferBase(GL_UNIFORM_BUFFER, 2, frame->renderer->tap_buffer);
@@ -82,14 +83,31 @@ static void upload_taps(struct frame *frame, GLuint program, bool ellipse) {
     program_set_int(gl, program, "filter_count", taps.filter_count);
 }
 
-pnb_result pass_visibility(struct frame *frame, const struct frame_light *light) {
+void bind_technique(struct frame *frame, const struct frame_light *light, GLuint program) {
+    const struct gl *gl = frame->gl;
+    const struct technique *technique = frame->settings->technique;
+    set_parameters(gl, program, frame->settings);
+    if (technique->taps)
+        upload_taps(frame, program, light->emitter.ellipse);
+    if (light->views.count > 0) {
+        gl_texture_bind(gl, &light->shadow_map, 3);
+        if (light->min_max.id)
+            gl_texture_bind(gl, &light->min_max, 4);
+    }
+    program_set_int(gl, program, "shadow_map", 3);
+    program_set_int(gl, program, "min_max", 4);
+    if (technique->bind)
+        technique->bind(frame, light, program, 5);
+}
+
+pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, bool tiles) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const struct program_desc desc = {.vertex = "pass_screen.vert",
-                                      .fragment = "pass_visibility.frag",
-                                      .technique = frame->settings->technique->shader,
-                                      .defines = {light_defines(&light->emitter, &light->views),
-                                                  technique_defines(frame->settings)}};
+    const struct program_desc desc = {
+        .vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
+        .fragment = "pass_visibility.frag",
+        .technique = frame->settings->technique->shader,
+        .defines = {light_defines(&light->emitter, &light->views), technique_defines(frame->settings)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
@@ -100,19 +118,11 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light)
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
     bind_gbuffer(renderer, program);
-    set_parameters(gl, program, frame->settings);
-    if (frame->settings->technique->taps)
-        upload_taps(frame, program, light->emitter.ellipse);
-    if (light->views.count > 0) {
-        gl_texture_bind(gl, &light->shadow_map, 3);
-        if (light->min_max.id)
-            gl_texture_bind(gl, &light->min_max, 4);
-    }
-    program_set_int(gl, program, "shadow_map", 3);
-    program_set_int(gl, program, "min_max", 4);
-    if (frame->settings->technique->bind)
-        frame->settings->technique->bind(frame, light, program, 5);
-    draw_screen(renderer);
+    bind_technique(frame, light, program);
+    if (tiles)
+        draw_tiles(frame, program, true);
+    else
+        draw_screen(renderer);
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
     return gl_check(gl, "visibility");
 }

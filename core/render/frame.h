@@ -33,7 +33,7 @@ struct frame_light {
     const struct scene_light *source;
     struct emitter emitter;
     struct light_views views;
-    struct gl_texture shadow_map, min_max; /* a layer per view; kept over the samples of a pixel */
+    struct gl_texture shadow_map, min_max, planes; /* a layer per view; kept over the samples of a pixel */
     struct gl_texture prefiltered[MAX_PREFILTERED]; /* the same, of the technique's own making */
 };
 
@@ -52,7 +52,7 @@ struct frame {
     uint32_t sample;           /* anti-aliasing sample being drawn */
     uint32_t sums_samples;     /* in the sums, with the one being drawn */
 
-    struct box *receivers;     /* what the camera sees, by tiles; see bounds.c */
+    struct box *receivers;     /* what the camera sees, by tiles; see tiles.c */
     size_t receiver_count;
     struct box *coarse_receivers; /* the same in fewer boxes, for techniques that fit many views */
     size_t coarse_receiver_count;

@@ -17,9 +17,11 @@ pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
     program_cache_init(&renderer->programs, gl);
     gl->GenFramebuffers(1, &renderer->framebuffer);
     gl->GenVertexArrays(1, &renderer->empty_vertex_array);
+    gl->GenVertexArrays(1, &renderer->tile_vertex_array);
     GLuint *const buffers[] = {&renderer->camera_buffer, &renderer->light_buffer, &renderer->tap_buffer,
-                               &renderer->box_buffer,    &renderer->pixel_buffer, &renderer->cursor_buffer};
-    for (int i = 0; i < 6; i++)
+                               &renderer->box_buffer,    &renderer->tile_buffer,  &renderer->tile_visibility_buffer,
+                               &renderer->cursor_buffer};
+    for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gl->GenBuffers(1, buffers[i]);
     pnb_result result = gpu_scene_create(gl, &renderer->scene);
     if (result == PNB_OK)
@@ -42,13 +44,15 @@ void renderer_destroy(struct renderer **out) {
     program_cache_free(&renderer->programs);
     gl->DeleteFramebuffers(1, &renderer->framebuffer);
     gl->DeleteVertexArrays(1, &renderer->empty_vertex_array);
-    const GLuint buffers[] = {renderer->camera_buffer, renderer->light_buffer, renderer->tap_buffer, renderer->box_buffer,
-                              renderer->pixel_buffer,  renderer->cursor_buffer};
-    gl->DeleteBuffers(6, buffers);
+    gl->DeleteVertexArrays(1, &renderer->tile_vertex_array);
+    const GLuint buffers[] = {renderer->camera_buffer, renderer->light_buffer, renderer->tap_buffer,
+                              renderer->box_buffer,    renderer->tile_buffer,  renderer->tile_visibility_buffer,
+                              renderer->cursor_buffer};
+    gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
     struct gl_texture *const textures[] = {
-        &renderer->gbuffer_depth, &renderer->gbuffer_normal, &renderer->gbuffer_color, &renderer->gbuffer_z,
-        &renderer->visibility,    &renderer->combined,       &renderer->shadowed,      &renderer->unshadowed,
-        &renderer->normal,        &renderer->gbuffer_emission, &renderer->caught, &renderer->uncaught};
+        &renderer->gbuffer_depth, &renderer->gbuffer_normal,   &renderer->gbuffer_color, &renderer->gbuffer_z,
+        &renderer->visibility,    &renderer->combined,         &renderer->shadowed,      &renderer->unshadowed,
+        &renderer->normal,        &renderer->gbuffer_emission, &renderer->caught,        &renderer->uncaught};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         gl_texture_free(gl, textures[i]);
     for (int i = 0; i < MAX_LIGHTS; i++)
@@ -68,7 +72,9 @@ void draw_screen(struct renderer *renderer) {
 static pnb_result find_receivers(struct frame *frame) {
     camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, 0);
     pnb_result result = pass_gbuffer(frame, true);
-    return result == PNB_OK ? pass_bounds(frame) : result;
+    if (result == PNB_OK)
+        result = pass_tiles(frame);
+    return result == PNB_OK ? read_receivers(frame) : result;
 }
 
 static void fit_lights(struct frame *frame) {
@@ -81,6 +87,10 @@ static void fit_lights(struct frame *frame) {
         if (!light->emitter.casts_shadow)
             light->views.count = 0;
     }
+}
+
+static bool uses_tiles(const struct frame *frame) {
+    return technique_skips(frame->settings->technique, frame->settings->parameters);
 }
 
 static uint64_t light_bytes(const struct frame *frame, const struct frame_light *light) {
@@ -100,6 +110,10 @@ static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *ligh
     pnb_result result = pass_shadow_map(frame, &light->views, map_translucency(frame), &light->shadow_map);
     if (result == PNB_OK && (frame->settings->technique->needs & NEEDS_MIN_MAX))
         result = pass_min_max(frame, &light->shadow_map, &light->min_max);
+    if (result == PNB_OK && uses_tiles(frame)) {
+        light_block_upload(frame->renderer, &light->emitter, &light->views);
+        result = pass_planes(frame, light);
+    }
     if (result == PNB_OK && frame->settings->technique->prefilter)
         result = frame->settings->technique->prefilter(frame, light);
     return result;
@@ -108,6 +122,7 @@ static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *ligh
 static void free_shadow_maps(struct frame *frame, struct frame_light *light) {
     gl_texture_free(frame->gl, &light->shadow_map);
     gl_texture_free(frame->gl, &light->min_max);
+    gl_texture_free(frame->gl, &light->planes);
     for (int i = 0; i < MAX_PREFILTERED; i++)
         gl_texture_free(frame->gl, &light->prefiltered[i]);
 }
@@ -137,14 +152,17 @@ static pnb_result draw_light(struct frame *frame, uint32_t index) {
     if (result != PNB_OK)
         return result;
     light_block_upload(renderer, &light->emitter, &light->views);
-    if (frame->settings->technique->draw)
+    const bool tiles = light->planes.id;
+    if (tiles)
+        result = pass_classify(frame, light);
+    if (result == PNB_OK && frame->settings->technique->draw)
         result = frame->settings->technique->draw(frame, light);
-    else
-        result = pass_visibility(frame, light);
+    else if (result == PNB_OK)
+        result = pass_visibility(frame, light, tiles);
     if (result != PNB_OK)
         return result;
     light_block_upload(renderer, &light->emitter, &light->views);
-    return pass_shading(frame, light, index == 0);
+    return pass_shading(frame, light, index == 0, tiles);
 }
 
 /* Shows what a progressive job has so far; after powers of two, each of which has half the noise of the one before. */
@@ -174,8 +192,10 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
         camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
         if (first > 0 || frame->sample > 0) /* find_receivers has drawn the first */
             result = pass_gbuffer(frame, false);
+        if (result == PNB_OK && (first > 0 || frame->sample > 0) && uses_tiles(frame))
+            result = pass_tiles(frame);
         if (result == PNB_OK && frame->scene->light_count == 0)
-            result = pass_shading(frame, NULL, true);
+            result = pass_shading(frame, NULL, true, false);
         if (result == PNB_OK && first == 0 && frame->sample == 0)
             result = pass_resolve_first_sample(frame);
         if (result == PNB_OK)

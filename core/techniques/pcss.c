@@ -52,7 +52,7 @@ static const struct parameter parameters[] = {
                           .type = PNB_INT,
                           .maximum = 4,
                           .default_value = 2},
-    [MIN_MAX] = {.name = "min_max",
+    [MIN_MAX] = {.name = SKIP_PARAMETER,
                  .label = "Min-Max Skip",
                  .description = "Skips pixels that the min-max pyramid shows to be fully lit or fully shadowed; faster, "
                                 "same image",

@@ -7,8 +7,8 @@
 
 extern const struct technique technique_hard, technique_pcf, technique_pcss, technique_esm, technique_reference;
 
-const struct technique *const techniques[] = {&technique_hard, &technique_pcf, &technique_pcss, &technique_esm,
-                                             &technique_reference, NULL};
+const struct technique *const techniques[] = {&technique_hard, &technique_pcf,       &technique_pcss,
+                                              &technique_esm,  &technique_reference, NULL};
 
 const struct technique *technique_find(const char *id) {
     for (int i = 0; techniques[i]; i++)
@@ -22,6 +22,11 @@ int technique_parameter(const struct technique *technique, const char *name) {
         if (strcmp(technique->parameters[i].name, name) == 0)
             return i;
     return -1;
+}
+
+bool technique_skips(const struct technique *technique, const double *parameters) {
+    const int skip = technique_parameter(technique, SKIP_PARAMETER);
+    return skip >= 0 && parameters[skip] > 0.0;
 }
 
 uint32_t pnb_technique_count(void) {
@@ -43,7 +48,8 @@ pnb_result pnb_technique_get_info(uint32_t index, pnb_technique_info *info) {
     if (result != PNB_OK)
         return result;
     if (index >= pnb_technique_count())
-        return error_set(PNB_ERROR_INVALID_ARGUMENT, "there are %u techniques, no number %u", pnb_technique_count(), index);
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "there are %u techniques, no number %u", pnb_technique_count(),
+                         index);
     const struct technique *technique = techniques[index];
     *info = (pnb_technique_info){.struct_size = sizeof *info,
                                  .parameter_count = parameter_count(technique),

@@ -20,6 +20,11 @@ enum technique_needs {
     NEEDS_ALL_CASTERS = 2  /* the map holds the nearest fragment, however transparent */
 };
 
+/* Parameter of a technique whose shader has `vec2 technique_extent(receiver r, out vec2 depths)`, the rectangle that
+ * holds its taps, and that yields exactly 1 or 0 where nothing or everything in it blocks. If it is on, tiles of the image
+ * that are decided by the min-max pyramid are not drawn by the technique. */
+#define SKIP_PARAMETER "min_max"
+
 struct technique {
     const char *id, *label, *description, *paper;
     const struct parameter *parameters; /* ends with a NULL name; each is a uniform `p_<name>` of the shader */
@@ -48,5 +53,7 @@ extern const struct technique *const techniques[]; /* ends with NULL */
 const struct technique *technique_find(const char *id);
 /* Index of a parameter by name, -1 if there is none. */
 int technique_parameter(const struct technique *technique, const char *name);
+/* Whether the SKIP_PARAMETER is there and on. */
+bool technique_skips(const struct technique *technique, const double *parameters);
 
 #endif

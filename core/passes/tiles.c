@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "../memory.h"
+#include "passes.h"
+
+#define TILE       16 /* pixels per side, as in common_tile.glsl */
+#define TILE_BYTES 48 /* of its struct tile */
+/* Tiles of the coarse boxes, per side of a group. */
+#define GROUP 8
+
+static bool is_empty(const struct box *box) {
+    return !(box->minimum[0] <= box->maximum[0]);
+}
+
+static void box_add(struct box *sum, const struct box *box) {
+    if (is_empty(sum)) {
+        *sum = *box;
+        return;
+    }
+    glm_vec3_minv(sum->minimum, (float *)box->minimum, sum->minimum);
+    glm_vec3_maxv(sum->maximum, (float *)box->maximum, sum->maximum);
+}
+
+/* Splits the tiles into groups of GROUP x GROUP and keeps those with something in them. */
+static pnb_result gather(struct frame *frame, const struct box *tiles, int columns, int rows) {
+    const int group_columns = (columns + GROUP - 1) / GROUP, group_rows = (rows + GROUP - 1) / GROUP;
+    const size_t group_count = (size_t)group_columns * (size_t)group_rows;
+    frame->receivers = memory_array((size_t)columns * (size_t)rows, sizeof *frame->receivers);
+    frame->coarse_receivers = memory_array(group_count, sizeof *frame->coarse_receivers);
+    if (!frame->receivers || !frame->coarse_receivers)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    for (size_t i = 0; i < group_count; i++) {
+        struct box group = {{1, 0, 0}, {-1, 0, 0}};
+        const int x0 = (int)(i % (size_t)group_columns) * GROUP, y0 = (int)(i / (size_t)group_columns) * GROUP;
+        for (int y = y0; y < y0 + GROUP && y < rows; y++)
+            for (int x = x0; x < x0 + GROUP && x < columns; x++) {
+                const struct box *tile = &tiles[y * columns + x];
+                if (is_empty(tile))
+                    continue;
+                frame->receivers[frame->receiver_count++] = *tile;
+                box_add(&group, tile);
+            }
+        if (!is_empty(&group))
+            frame->coarse_receivers[frame->coarse_receiver_count++] = group;
+    }
+    return PNB_OK;
+}
+
+static void tile_counts(const struct renderer *renderer, int counts[2]) {
+    counts[0] = (renderer->gbuffer_depth.width + TILE - 1) / TILE;
+    counts[1] = (renderer->gbuffer_depth.height + TILE - 1) / TILE;
+}
+
+static void new_storage(const struct gl *gl, GLuint buffer, GLuint binding, size_t bytes) {
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, buffer);
+    gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)bytes, NULL, GL_STREAM_READ);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer);
+}
+
+pnb_result pass_tiles(struct frame *frame) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    static const struct program_desc desc = {.compute = "pass_tiles.comp"};
+    GLuint program;
+    pnb_result result = program_use(&renderer->programs, &desc, &program);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Tiles")) != PNB_OK)
+        return result;
+    int counts[2];
+    tile_counts(renderer, counts);
+    const size_t count = (size_t)counts[0] * (size_t)counts[1];
+    new_storage(gl, renderer->box_buffer, 1, count * sizeof(struct box));
+    new_storage(gl, renderer->tile_buffer, 5, count * TILE_BYTES);
+    bind_gbuffer(renderer, program);
+    gl->Uniform2iv(gl->GetUniformLocation(program, "tile_count"), 1, counts);
+    gl->DispatchCompute((GLuint)(counts[0] + 7) / 8, (GLuint)(counts[1] + 7) / 8, 1);
+    gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+    timer_end(&renderer->timer, count * (sizeof(struct box) + TILE_BYTES));
+    return gl_check(gl, "tiles");
+}
+
+pnb_result read_receivers(struct frame *frame) {
+    const struct gl *gl = frame->gl;
+    int counts[2];
+    tile_counts(frame->renderer, counts);
+    const size_t count = (size_t)counts[0] * (size_t)counts[1];
+    struct box *boxes = memory_array(count, sizeof *boxes);
+    if (!boxes)
+        return PNB_ERROR_OUT_OF_MEMORY;
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, frame->renderer->box_buffer);
+    gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *boxes), boxes);
+    pnb_result result = gl_check(gl, "receiver bounds");
+    if (result == PNB_OK)
+        result = gather(frame, boxes, counts[0], counts[1]);
+    memory_free(boxes);
+    return result;
+}
+
+pnb_result pass_classify(struct frame *frame, const struct frame_light *light) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    const struct program_desc desc = {
+        .compute = "pass_classify.comp",
+        .technique = frame->settings->technique->shader,
+        .defines = {light_defines(&light->emitter, &light->views), technique_defines(frame->settings)}};
+    GLuint program;
+    pnb_result result = program_use(&renderer->programs, &desc, &program);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Tiles")) != PNB_OK)
+        return result;
+    int counts[2];
+    tile_counts(renderer, counts);
+    const int count = counts[0] * counts[1];
+    new_storage(gl, renderer->tile_visibility_buffer, 1, (size_t)count * sizeof(float));
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, renderer->tile_buffer);
+    bind_technique(frame, light, program);
+    gl_texture_bind(gl, &light->planes, 0);
+    program_set_int(gl, program, "planes", 0);
+    program_set_int(gl, program, "tile_count", count);
+    gl->DispatchCompute((GLuint)(count + 63) / 64, 1, 1);
+    gl->MemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
+    timer_end(&renderer->timer, (size_t)count * sizeof(float));
+    return gl_check(gl, "classification");
+}
+
+void draw_tiles(struct frame *frame, GLuint program, bool undecided_only) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    int counts[2];
+    tile_counts(renderer, counts);
+    gl->Uniform2iv(gl->GetUniformLocation(program, "tile_count"), 1, counts);
+    program_set_int(gl, program, "undecided_only", undecided_only);
+    gl->BindVertexArray(renderer->tile_vertex_array);
+    gl->BindBuffer(GL_ARRAY_BUFFER, renderer->tile_visibility_buffer);
+    gl->EnableVertexAttribArray(0);
+    gl->VertexAttribPointer(0, 1, GL_FLOAT, GL_FALSE, 0, NULL);
+    gl->PointSize((float)TILE);
+    gl->Viewport(-(GLint)frame->settings->crop[0], -(GLint)frame->settings->crop[1], counts[0] * TILE,
+                 counts[1] * TILE);
+    gl->DrawArrays(GL_POINTS, 0, counts[0] * counts[1]);
+}

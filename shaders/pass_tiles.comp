@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each tile's bounds and plane for pass_classify.comp; and the box, in relative world space, of all that its pixels
+// cover between their depths. Light views are fitted to the boxes.
+#include "common_camera.glsl"
+#include "common_tile.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+uniform sampler2D gbuffer_depth, gbuffer_normal;
+uniform ivec2 tile_count;
+
+struct box {
+    float minimum[3], maximum[3]; // minimum > maximum: nothing seen
+};
+layout(std430, binding = 1) writeonly buffer box_block {
+    box boxes[];
+};
+layout(std430, binding = 5) writeonly buffer tile_block {
+    tile tiles[];
+};
+
+const float FAR = 3.4e38;
+
+// The corners of the piece of the view the tile cuts out between these depths.
+box view_box(ivec2 first, ivec2 last, float nearest, float farthest) {
+    vec3 minimum = vec3(FAR), maximum = vec3(-FAR);
+    if (farthest > 0.0)
+        for (int corner = 0; corner < 8; corner++) {
+            vec2 pixel = vec2((corner & 1) != 0 ? last.x : first.x, (corner & 2) != 0 ? last.y : first.y);
+            vec3 position = camera_position(pixel, (corner & 4) != 0 ? farthest : nearest);
+            minimum = min(minimum, position);
+            maximum = max(maximum, position);
+        }
+    return box(float[3](minimum.x, minimum.y, minimum.z), float[3](maximum.x, maximum.y, maximum.z));
+}
+
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(at, tile_count)))
+        return;
+    ivec2 first = at * TILE, last = min(first + TILE, textureSize(gbuffer_depth, 0));
+    float nearest = FAR, farthest = 0.0;
+    tile t = tile(vec4(FAR), vec4(-FAR), vec4(0.0, 0.0, 1.0, 0.0));
+    t.normal.xyz = octahedral_decode(texelFetch(gbuffer_normal, (first + last) / 2, 0).zw);
+    float deviation = 0.0; // squared
+    for (int y = first.y; y < last.y; y++)
+        for (int x = first.x; x < last.x; x++) {
+            float depth = abs(texelFetch(gbuffer_depth, ivec2(x, y), 0).r);
+            vec3 difference = octahedral_decode(texelFetch(gbuffer_normal, ivec2(x, y), 0).zw) - t.normal.xyz;
+            vec3 position = camera_position(vec2(x, y) + 0.5, depth);
+            vec4 value = vec4(position, dot(t.normal.xyz, position));
+            bool seen = depth > 0.0;
+            nearest = seen ? min(nearest, depth) : nearest;
+            farthest = max(farthest, depth);
+            t.minimum = seen ? min(t.minimum, value) : t.minimum;
+            t.maximum = seen ? max(t.maximum, value) : t.maximum;
+            deviation = seen ? max(deviation, dot(difference, difference)) : deviation;
+        }
+    t.normal.w = sqrt(deviation) + 1e-6;
+    int index = at.y * tile_count.x + at.x;
+    boxes[index] = view_box(first, last, nearest, farthest);
+    tiles[index] = t;
+}
