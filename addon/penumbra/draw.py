@@ -2,7 +2,6 @@
 """Pictures and text in a region. Only while Blender draws one: at other times there is no GPU to draw with."""
 
 import textwrap
-from ctypes import c_float
 
 import blf
 import bpy
@@ -13,10 +12,9 @@ _FONT = 0
 _TEXT_POINTS = 13
 
 
-def make_texture(width, height, address):
-    """Texture of RGBA floats at this address."""
-    pixels = (c_float * (4 * width * height)).from_address(address)
-    buffer = gpu.types.Buffer('FLOAT', 4 * width * height, pixels)
+def make_texture(width, height, pixels):
+    """Texture of RGBA floats, a ctypes array."""
+    buffer = gpu.types.Buffer('FLOAT', len(pixels), pixels)
     return gpu.types.GPUTexture((width, height), format='RGBA32F', data=buffer)
 
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders on the library's thread that the user interface never waits for."""
 
-from array import array
-from ctypes import byref, c_uint32, c_void_p
+from ctypes import byref, c_float, c_uint32, c_void_p
 
 from . import capi
 
@@ -31,11 +30,15 @@ class Job:
     def wait(self, milliseconds):
         capi.library().job_wait(self._handle, milliseconds, None)
 
-    def copy(self):
-        """(floats of the first image, their number of samples)."""
+    def picture(self):
+        """(floats of the first image as ctypes array, their number of samples). Valid as long as the job."""
+        if self.is_done():
+            image = capi.Image()
+            capi.library().job_get_image(self._handle, 0, byref(image))
+            return (c_float * (4 * self.width * self.height)).from_address(image.pixels), self.samples
         count = c_uint32()
-        pixels = array('f', bytes(16 * self.width * self.height))
-        capi.library().job_copy_image(self._handle, 0, pixels.buffer_info()[0], len(pixels), byref(count))
+        pixels = (c_float * (4 * self.width * self.height))()
+        capi.library().job_copy_image(self._handle, 0, pixels, len(pixels), byref(count))
         return pixels, count.value
 
     def messages(self):

@@ -253,8 +253,8 @@ class Picture:
     """The newest picture of a run."""
 
     def __init__(self, run):
-        pixels, run.samples_taken = run.job.copy()
-        self._texture = draw.make_texture(run.job.width, run.job.height, pixels.buffer_info()[0])
+        pixels, run.samples_taken = run.job.picture()
+        self._texture = draw.make_texture(run.job.width, run.job.height, pixels)
         self._crop, self._size = run.crop, run.size
         parts = [run.technique, f"sample {run.samples_taken} of {run.job.samples}"]
         if run.scale < 1.0:

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs inside Blender with a window; see run.sh. A thread looks at the display and notes when it changes."""
+
+import argparse
+import math
+import mmap
+import os
+import statistics
+import sys
+import threading
+import time
+import traceback
+from math import cos, pi, sin
+
+import addon_utils
+import bpy
+from mathutils import Quaternion
+
+BALLS, RINGS = 10, 71            # each ball has 2 * RINGS * (RINGS - 1) triangles
+MOVES, ORBIT_SECONDS, QUIET = 15, 6.0, 0.7
+ENGINES = {'PENUMBRA': 'PENUMBRA', 'EEVEE': None, 'CYCLES': 'CYCLES'}
+
+
+class Display(threading.Thread):
+    """Looks every 2 ms at some rows in the middle of the display."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        file = open(os.path.join(os.environ['TEST_DISPLAY'], 'Xvfb_screen0'), 'rb')
+        self._memory = mmap.mmap(file.fileno(), 0, prot=mmap.PROT_READ)
+        size = len(self._memory)
+        self._rows = [slice(int(size * share), int(size * share) + 960 * 4) for share in (0.4, 0.5, 0.55, 0.6, 0.65)]
+        self.changes = []
+        self.start()
+
+    def run(self):
+        before = None
+        while True:
+            now = [self._memory[row] for row in self._rows]
+            if now != before:
+                self.changes.append(time.perf_counter())
+                before = now
+            time.sleep(0.002)
+
+
+def ball(number):
+    vertices, faces = [], []
+    for ring in range(RINGS + 1):
+        for step in range(RINGS):
+            across = sin(pi * ring / RINGS)
+            vertices.append((across * cos(2 * pi * step / RINGS), across * sin(2 * pi * step / RINGS),
+                             cos(pi * ring / RINGS)))
+    for ring in range(RINGS):
+        for step in range(RINGS):
+            corners = [ring * RINGS + step, (ring + 1) * RINGS + step, (ring + 1) * RINGS + (step + 1) % RINGS,
+                       ring * RINGS + (step + 1) % RINGS]
+            faces.append(corners[1:] if ring == 0 else corners[:3] if ring == RINGS - 1 else corners)
+    mesh = bpy.data.meshes.new(f"Ball {number}")
+    mesh.from_pydata(vertices, [], faces)
+    return mesh
+
+
+def add(data, location=(0, 0, 0), scale=(1, 1, 1), rotation=(0, 0, 0)):
+    ob = bpy.data.objects.new(data.name, data)
+    ob.location, ob.scale, ob.rotation_euler = location, scale, rotation
+    bpy.context.scene.collection.objects.link(ob)
+    return ob
+
+
+def make_scene():
+    for ob in list(bpy.data.objects):
+        bpy.data.objects.remove(ob)
+    floor = bpy.data.meshes.new("Floor")
+    floor.from_pydata([(-8, -8, 0), (8, -8, 0), (8, 8, 0), (-8, 8, 0)], [], [(0, 1, 2, 3)])
+    add(floor)
+    for number in range(BALLS):
+        angle = 2 * pi * number / BALLS
+        add(ball(number), (3 * cos(angle), 3 * sin(angle), 0.8), (0.7, 0.7, 0.7))
+    light = bpy.data.lights.new("Lamp", 'AREA')
+    light.energy, light.size = 500.0, 1.0
+    bpy.context.scene.world = None
+    return add(light, (0, 0, 5))
+
+
+def show(engine, scale):
+    scene = bpy.context.window_manager.windows[0].scene
+    scene.render.engine = engine
+    if engine == 'PENUMBRA':
+        scene.penumbra.technique = 'PCSS'
+        scene.penumbra.viewport_latency = 2000 if scale >= 1.0 else 10
+        scene.penumbra.viewport_samples = 16
+    elif hasattr(scene, 'eevee'):
+        scene.eevee.taa_samples = 16
+    for area in bpy.context.window_manager.windows[0].screen.areas:
+        if area.type == 'VIEW_3D':
+            space = area.spaces.active
+            space.overlay.show_overlays = space.show_gizmo = False
+            space.shading.type = 'RENDERED'
+            space.region_3d.view_perspective = 'PERSP'
+            space.region_3d.view_location = 0, 0, 0
+            space.region_3d.view_distance = 14
+            return space.region_3d
+    raise RuntimeError("there is no viewport")
+
+
+def wait(seconds):
+    end = time.perf_counter() + seconds
+    while time.perf_counter() < end:
+        yield
+
+
+def wait_quiet(display):
+    """Until the display did not change for a while."""
+    while not display.changes or time.perf_counter() - display.changes[-1] < QUIET:
+        yield
+
+
+class Blocked:
+    """The longest time that the event loop did not run."""
+
+    def __init__(self):
+        self.reset()
+
+    def reset(self):
+        self.longest, self._last = 0.0, time.perf_counter()
+
+    def tick(self):
+        now = time.perf_counter()
+        self.longest, self._last = max(self.longest, now - self._last), now
+
+
+def measure_moves(display, lamp, blocked):
+    times, longest = [], []
+    for number in range(MOVES):
+        # After some moves at rest, some while samples are being added.
+        yield from wait_quiet(display) if number % 3 else wait(0.3)
+        count, start = len(display.changes), time.perf_counter()
+        blocked.reset()
+        lamp.location.x = 0.4 * math.sin(number + 1.0)
+        while len(display.changes) == count:
+            yield
+        times.append(display.changes[count] - start)
+        longest.append(blocked.longest)
+    return times[1:], longest[1:]
+
+
+def measure_orbit(display, region_3d, blocked):
+    start = region_3d.view_rotation.copy()
+    yield from wait_quiet(display)
+    count, begin = len(display.changes), time.perf_counter()
+    blocked.reset()
+    while time.perf_counter() - begin < ORBIT_SECONDS:
+        angle = 0.5 * (time.perf_counter() - begin)
+        region_3d.view_rotation = Quaternion((0, 0, 1), angle) @ start
+        yield
+    return (len(display.changes) - count) / (time.perf_counter() - begin), blocked.longest
+
+
+def measure(options, display, blocked):
+    lamp = make_scene()
+    print(f"{2 * RINGS * (RINGS - 1) * BALLS + 2} triangles, scale {options.scale}")
+    print(f"{'engine':<10}{'lamp to pixels, ms: median':>28}{'worst':>8}{'orbit, 1/s':>12}{'longest block, ms':>20}")
+    for name in options.engines:
+        identifier = ENGINES[name] or eevee()
+        region_3d = show(identifier, options.scale)
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+            bpy.context.view_layer.update()
+        yield from wait(2.0)
+        yield from wait_quiet(display)
+        times, longest = yield from measure_moves(display, lamp, blocked)
+        rate, block = yield from measure_orbit(display, region_3d, blocked)
+        print(f"{name:<10}{1000 * statistics.median(times):>28.0f}{1000 * max(times):>8.0f}{rate:>12.1f}"
+              f"{1000 * max(block, *longest):>20.0f}", flush=True)
+
+
+def eevee():
+    return 'BLENDER_EEVEE_NEXT' if (4, 2) <= bpy.app.version < (5, 0) else 'BLENDER_EEVEE'
+
+
+def main():
+    parser = argparse.ArgumentParser(prog='run.sh')
+    parser.add_argument('--scale', type=float, default=1.0)
+    parser.add_argument('engines', nargs='*')
+    options = parser.parse_args(sys.argv[sys.argv.index('--') + 1:])
+    options.engines = options.engines or ['PENUMBRA', 'EEVEE']
+    addon_utils.enable('penumbra')
+    bpy.context.preferences.view.show_splash = False
+    display, blocked = Display(), Blocked()
+    steps = measure(options, display, blocked)
+
+    def full_screen():
+        window = bpy.context.window_manager.windows[0]
+        area = max((area for area in window.screen.areas if area.type == 'VIEW_3D'), key=lambda area: area.width)
+        with bpy.context.temp_override(window=window, area=area):
+            bpy.ops.screen.screen_full_area(use_hide_panels=True)
+        bpy.app.timers.register(step, first_interval=1.0)
+
+    def step():
+        blocked.tick()
+        try:
+            next(steps)
+            return 0.005
+        except StopIteration:
+            pass
+        except Exception:
+            traceback.print_exc()
+        bpy.ops.wm.quit_blender()
+        return None
+    bpy.app.timers.register(full_screen, first_interval=0.5)
+
+
+main()
