@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, device, engine, props, report, textures, ui, viewport
+from . import capi, compositing, device, engine, props, report, textures, ui, viewport
 
 bl_info = {
     "name": "Penumbra",
@@ -15,7 +15,7 @@ bl_info = {
     "category": "Render",
 }
 
-_CLASSES = (engine.PenumbraEngine, engine.PENUMBRA_OT_capture, report.PENUMBRA_OT_report)
+_CLASSES = (engine.PenumbraEngine, engine.PENUMBRA_OT_capture, report.PENUMBRA_OT_report, *compositing.CLASSES)
 
 
 @bpy.app.handlers.persistent
@@ -35,9 +35,11 @@ def register():
     ui.register()
     bpy.types.TOPBAR_MT_file_export.append(_menu)
     bpy.app.handlers.render_init.append(_forget_textures)
+    bpy.app.handlers.render_pre.append(compositing.synchronize)
 
 
 def unregister():
+    bpy.app.handlers.render_pre.remove(compositing.synchronize)
     bpy.app.handlers.render_init.remove(_forget_textures)
     bpy.types.TOPBAR_MT_file_export.remove(_menu)
     viewport.unregister()

@@ -117,3 +117,77 @@ def casts_opaque_shadow(material):
 def view_layer_overrides(view_layer):
     """(material, world) that replace all others, or None."""
     return view_layer.material_override, getattr(view_layer, 'world_override', None)
+
+
+# ---- Compositor: a tree of the scene until 4.x, a node group of its own since 5.0 ----
+
+_COMPOSITOR_IS_GROUP = 'compositing_node_group' in bpy.types.Scene.bl_rna.properties
+
+
+def compositor_tree(scene):
+    return scene.compositing_node_group if _COMPOSITOR_IS_GROUP else scene.node_tree
+
+
+def uses_compositor(scene):
+    return bool(scene.compositing_node_group) if _COMPOSITOR_IS_GROUP else scene.use_nodes
+
+
+def set_uses_compositor(scene, uses):
+    if not _COMPOSITOR_IS_GROUP and scene.use_nodes != uses:
+        scene.use_nodes = uses
+
+
+def ensure_compositor_tree(scene):
+    """(tree, whether it is new) that is used for renders."""
+    before = compositor_tree(scene)
+    if not _COMPOSITOR_IS_GROUP:
+        scene.use_nodes = True
+        return scene.node_tree, before is None
+    if before:
+        return before, False
+    tree = bpy.data.node_groups.new(f"{scene.name} Compositor", 'CompositorNodeTree')
+    tree.interface.new_socket("Image", in_out='OUTPUT', socket_type='NodeSocketColor')
+    tree.nodes.new('NodeGroupOutput')
+    scene.compositing_node_group = tree
+    return tree, True
+
+
+def remove_compositor_tree(scene):
+    """A scene's own tree cannot be removed, only not be used."""
+    if _COMPOSITOR_IS_GROUP:
+        bpy.data.node_groups.remove(scene.compositing_node_group)
+
+
+def clear_compositor(scene):
+    """Of a copied scene."""
+    if _COMPOSITOR_IS_GROUP:
+        scene.compositing_node_group = None
+    elif scene.node_tree:
+        scene.node_tree.nodes.clear()
+        scene.use_nodes = False
+
+
+def compositor_outputs(tree):
+    """The image sockets of what is taken as the render."""
+    kind = 'NodeGroupOutput' if _COMPOSITOR_IS_GROUP else 'CompositorNodeComposite'
+    nodes = [node for node in tree.nodes if node.bl_idname == kind and not node.mute] or [tree.nodes.new(kind)]
+    return [node.inputs[0] for node in nodes]
+
+
+def new_multiply_node(tree):
+    """(node, first input, second input, output)."""
+    if _COMPOSITOR_IS_GROUP:
+        node = tree.nodes.new('ShaderNodeMix')
+        node.data_type, node.blend_type = 'RGBA', 'MULTIPLY'
+        sockets = {socket.identifier: socket for socket in (*node.inputs, *node.outputs)}
+        sockets['Factor_Float'].default_value = 1.0
+        return node, sockets['A_Color'], sockets['B_Color'], sockets['Result_Color']
+    node = tree.nodes.new('CompositorNodeMixRGB')
+    node.blend_type = 'MULTIPLY'
+    return node, node.inputs[1], node.inputs[2], node.outputs[0]
+
+
+def multiply_input(node):
+    """The first input of such a node."""
+    name = 'A_Color' if _COMPOSITOR_IS_GROUP else 'Image'
+    return next(socket for socket in node.inputs if socket.identifier == name)

@@ -6,7 +6,7 @@ import textwrap
 import bpy
 from bpy.types import Panel
 
-from . import compat, props, report
+from . import compat, compositing, props, report
 
 ENGINE = 'PENUMBRA'
 
@@ -39,23 +39,27 @@ def _paragraph(layout, text, context):
         column.label(text=line)
 
 
+def draw_technique(column, context):
+    """The technique, what it is, its parameters, and the shadow maps."""
+    settings = context.scene.penumbra
+    info, parameters = props.technique(settings)
+    column.prop(settings, 'technique')
+    _paragraph(column, info.description.decode(), context)
+    if info.paper:
+        _paragraph(column, info.paper.decode(), context)
+    group = getattr(settings, info.id.decode().lower())
+    for parameter in parameters:
+        column.prop(group, parameter.name.decode())
+    column.separator()
+    column.prop(settings, 'shadow_map_size')
+
+
 class PENUMBRA_PT_technique(_EnginePanel, Panel):
     bl_label = "Soft Shadows"
     bl_context = 'render'
 
     def draw(self, context):
-        settings = context.scene.penumbra
-        info, parameters = props.technique(settings)
-        column = self._column()
-        column.prop(settings, 'technique')
-        _paragraph(column, info.description.decode(), context)
-        if info.paper:
-            _paragraph(column, info.paper.decode(), context)
-        group = getattr(settings, info.id.decode().lower())
-        for parameter in parameters:
-            column.prop(group, parameter.name.decode())
-        column.separator()
-        column.prop(settings, 'shadow_map_size')
+        draw_technique(self._column(), context)
 
 
 class PENUMBRA_PT_sampling(_EnginePanel, Panel):
@@ -145,8 +149,32 @@ class PENUMBRA_PT_object_visibility(_EnginePanel, Panel):
         column.prop(context.object, 'visible_shadow', text="Shadow")
 
 
+class PENUMBRA_PT_composite(Panel):
+    """Among the render settings of other engines."""
+    bl_label = "Penumbra Soft Shadows"
+    bl_space_type = 'PROPERTIES'
+    bl_region_type = 'WINDOW'
+    bl_context = 'render'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    @classmethod
+    def poll(cls, context):
+        return context.engine != ENGINE
+
+    def draw(self, context):
+        column = self.layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        has_shadows = compositing.shadow_scene(context.scene) is not None
+        operator = compositing.PENUMBRA_OT_composite_remove if has_shadows else compositing.PENUMBRA_OT_composite
+        column.operator(operator.bl_idname)
+        if has_shadows:
+            draw_technique(column, context)
+            column.prop(context.scene.penumbra, 'samples')
+
+
 CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_film, PENUMBRA_PT_report, PENUMBRA_PT_passes,
-           PENUMBRA_PT_light, PENUMBRA_PT_object_visibility)
+           PENUMBRA_PT_light, PENUMBRA_PT_object_visibility, PENUMBRA_PT_composite)
 
 
 def _adopted():

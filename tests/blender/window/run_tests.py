@@ -49,6 +49,8 @@ def run_all(tests):
         start = time.monotonic()
         problem = yield from run(test)
         print(problem or "ok", f"{time.monotonic() - start:.1f} s", flush=True)
+        for _ in range(5):      # Blender crashes if it quits before it has drawn a changed screen
+            yield 'draw'
         passed += problem is None
         failed += problem is not None
     print(f"Blender {bpy.app.version_string}")

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Soft shadows in the renders of other engines: a linked copy of the scene makes the Shadow pass, and the compositor
+multiplies with it. Everything made here carries a mark, by which the counterpart finds and removes it."""
+
+import bpy
+from bpy.types import Operator
+
+from . import compat
+
+# On the copy: the pointer to it is kept by the compositor's node; on nodes: that they are ours.
+_MARK = 'penumbra_composite'
+_SPACING = 200
+
+
+def shadow_scene(scene):
+    """The copy that makes the shadows of this scene, or None."""
+    tree = compat.compositor_tree(scene)
+    nodes = _ours(tree) if tree else []
+    return next((node.scene for node in nodes if node.bl_idname == 'CompositorNodeRLayers' and node.scene), None)
+
+
+def _ours(tree):
+    return [node for node in tree.nodes if _MARK in node]
+
+
+def add(scene, view_layer):
+    """Sets it up. Raises ValueError with what is in the way."""
+    if scene.render.engine == 'PENUMBRA':
+        raise ValueError("The scene is rendered by Penumbra: its shadows are in the picture already")
+    if shadow_scene(scene):
+        raise ValueError("The scene has composited soft shadows already")
+    had_nodes = compat.uses_compositor(scene)
+    tree, is_new = compat.ensure_compositor_tree(scene)
+    outputs = compat.compositor_outputs(tree)
+    copy = _copy_scene(scene, view_layer)
+    copy[_MARK] = [int(had_nodes), int(is_new)]
+    shadow = _layers_node(tree, copy, view_layer.name)
+    for socket in outputs:
+        _multiply(tree, scene, view_layer, socket, shadow.outputs['Shadow'])
+
+
+def _copy_scene(scene, view_layer):
+    copy = scene.copy()
+    copy.name = f"{scene.name} Soft Shadows"
+    compat.clear_compositor(copy)
+    copy.render.engine = 'PENUMBRA'
+    copy.render.film_transparent = False
+    layer = copy.view_layers[view_layer.name]
+    layer.use = layer.use_pass_shadow = True
+    layer.update_render_passes()
+    return copy
+
+
+def _layers_node(tree, scene, layer):
+    node = tree.nodes.new('CompositorNodeRLayers')
+    node[_MARK] = True
+    node.scene = scene
+    node.layer = layer
+    node.label = scene.name
+    return node
+
+
+def _multiply(tree, scene, view_layer, socket, shadow):
+    """Between an output's image and what feeds it."""
+    source = socket.links[0].from_socket if socket.links else _layers_node(tree, scene, view_layer.name).outputs['Image']
+    node, first, second, result = compat.new_multiply_node(tree)
+    node[_MARK] = True
+    node.label = "Soft Shadows"
+    place = socket.node.location
+    node.location = place.x - _SPACING, place.y
+    shadow.node.location = place.x - 2 * _SPACING, place.y - 2 * _SPACING
+    tree.links.new(source, first)
+    tree.links.new(shadow, second)
+    tree.links.new(result, socket)
+
+
+def remove(scene):
+    """Leaves the scene as it was before `add`."""
+    copy = shadow_scene(scene)
+    if copy is None:
+        raise ValueError("The scene has no composited soft shadows")
+    had_nodes, is_new = copy[_MARK]
+    tree = compat.compositor_tree(scene)
+    for node in _ours(tree):
+        if node.bl_idname != 'CompositorNodeRLayers':
+            _bypass(tree, node)
+    for node in _ours(tree):
+        tree.nodes.remove(node)
+    if is_new:
+        compat.remove_compositor_tree(scene)
+    compat.set_uses_compositor(scene, bool(had_nodes))
+    copy.user_clear()   # 3.4 counts a copied scene as a user of itself, and says so
+    bpy.data.scenes.remove(copy)
+
+
+def _bypass(tree, multiply):
+    """What fed a Multiply node feeds what it fed; a source of ours goes with it."""
+    source = compat.multiply_input(multiply).links[0].from_socket
+    targets = [link.to_socket for output in multiply.outputs for link in output.links]
+    if _MARK not in source.node:
+        for target in targets:
+            tree.links.new(source, target)
+
+
+# ---- Keeping the copy like its scene ----
+
+_RENDER_SETTINGS = ('resolution_x', 'resolution_y', 'resolution_percentage', 'pixel_aspect_x', 'pixel_aspect_y',
+                    'use_border', 'use_crop_to_border', 'border_min_x', 'border_max_x', 'border_min_y', 'border_max_y',
+                    'use_multiview', 'filter_size')
+
+
+@bpy.app.handlers.persistent
+def synchronize(scene, *_arguments):
+    """Before a render: the copy looks through the same camera at the same frame with the same settings."""
+    copy = shadow_scene(scene) if isinstance(scene, bpy.types.Scene) else None
+    if copy is None:
+        return
+    _assign(copy, 'camera', scene.camera)
+    _assign(copy, 'frame_current', scene.frame_current)
+    for name in _RENDER_SETTINGS:
+        _assign(copy.render, name, getattr(scene.render, name))
+    _assign_group(copy.penumbra, scene.penumbra)
+
+
+def _assign(target, name, value):
+    if getattr(target, name) != value:
+        setattr(target, name, value)
+
+
+def _assign_group(target, source):
+    for item in source.bl_rna.properties:
+        if item.identifier in {'rna_type', 'name'}:
+            continue
+        if item.type == 'POINTER':
+            _assign_group(getattr(target, item.identifier), getattr(source, item.identifier))
+        else:
+            _assign(target, item.identifier, getattr(source, item.identifier))
+
+
+# ---- Operators ----
+
+class _Operator(Operator):
+    bl_options = {'REGISTER', 'UNDO'}
+
+    def execute(self, context):
+        try:
+            self.change(context)
+        except ValueError as error:
+            self.report({'ERROR'}, str(error))
+            return {'CANCELLED'}
+        return {'FINISHED'}
+
+
+class PENUMBRA_OT_composite(_Operator):
+    """Multiply Penumbra's soft shadows into the renders of this scene, by its compositor"""
+    bl_idname = 'penumbra.composite'
+    bl_label = "Composite Soft Shadows"
+
+    def change(self, context):
+        add(context.scene, context.view_layer)
+
+
+class PENUMBRA_OT_composite_remove(_Operator):
+    """Undo Composite Soft Shadows: remove its nodes and its scene"""
+    bl_idname = 'penumbra.composite_remove'
+    bl_label = "Remove Composited Soft Shadows"
+
+    def change(self, context):
+        remove(context.scene)
+
+
+CLASSES = (PENUMBRA_OT_composite, PENUMBRA_OT_composite_remove)
