@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, compositing, device, engine, props, report, textures, ui, viewport
+from . import capi, compositing, device, engine, overlay, props, report, textures, ui, viewport
 
 bl_info = {
     "name": "Penumbra",
@@ -33,6 +33,7 @@ def register():
     for cls in _CLASSES:
         bpy.utils.register_class(cls)
     ui.register()
+    overlay.register()
     bpy.types.TOPBAR_MT_file_export.append(_menu)
     bpy.app.handlers.render_init.append(_forget_textures)
     bpy.app.handlers.render_pre.append(compositing.synchronize)
@@ -42,6 +43,7 @@ def unregister():
     bpy.app.handlers.render_pre.remove(compositing.synchronize)
     bpy.app.handlers.render_init.remove(_forget_textures)
     bpy.types.TOPBAR_MT_file_export.remove(_menu)
+    overlay.unregister()
     viewport.unregister()
     ui.unregister()
     for cls in reversed(_CLASSES):

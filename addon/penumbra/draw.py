@@ -6,6 +6,7 @@ import textwrap
 import blf
 import bpy
 import gpu
+from gpu_extras.batch import batch_for_shader
 from gpu_extras.presets import draw_texture_2d
 
 _FONT = 0
@@ -24,6 +25,63 @@ def draw_picture(texture, x, y, width, height):
     draw_texture_2d(texture, (x, y), width, height)
     gpu.state.blend_set('NONE')
 
+
+# ---- Shadows over what another engine drew ----
+
+_shadow_shader = None
+_SHADOW_VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
+# Premultiplied black of this alpha is a multiplication of what lies below.
+_SHADOW_FRAGMENT = """
+void main() {
+    ivec2 pixel = ivec2((gl_FragCoord.xy - place.xy) / place.zw * vec2(size));
+    if (any(lessThan(gl_FragCoord.xy, place.xy)) || any(greaterThanEqual(pixel, size)))
+        discard;
+    float light = 0.0;
+    for (int channel = 0; channel < 3; channel++)
+        light += texelFetch(shadow, ivec2(3 * pixel.x + channel, pixel.y), 0).r / 3.0;
+    float alpha = (1.0 - clamp(light, 0.0, 1.0)) * color.a;
+    result = vec4(color.rgb * alpha, alpha);
+}
+"""
+
+
+def make_shadow_texture(width, height, pixels):
+    """Texture of RGB floats: three texels of one channel per pixel, since there is no texture of three."""
+    return gpu.types.GPUTexture((3 * width, height), format='R32F', data=gpu.types.Buffer('FLOAT', len(pixels), pixels))
+
+
+def draw_shadow(texture, size, place, color):
+    """`size`: of the picture; `place`: x, y, width, height in the region; `color`: RGB and strength."""
+    shader = _get_shadow_shader()
+    batch = batch_for_shader(shader, 'TRIS', {'position': ((-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0))})
+    gpu.state.blend_set('ALPHA_PREMULT')
+    gpu.state.depth_test_set('NONE')
+    shader.bind()
+    shader.uniform_sampler('shadow', texture)
+    shader.uniform_float('place', place)
+    shader.uniform_float('color', color)
+    shader.uniform_int('size', size)
+    batch.draw(shader)
+    gpu.state.blend_set('NONE')
+
+
+def _get_shadow_shader():
+    global _shadow_shader
+    if _shadow_shader is None:
+        info = gpu.types.GPUShaderCreateInfo()
+        info.vertex_in(0, 'VEC2', 'position')
+        info.sampler(0, 'FLOAT_2D', 'shadow')
+        info.push_constant('VEC4', 'place')
+        info.push_constant('VEC4', 'color')
+        info.push_constant('IVEC2', 'size')
+        info.fragment_out(0, 'VEC4', 'result')
+        info.vertex_source(_SHADOW_VERTEX)
+        info.fragment_source(_SHADOW_FRAGMENT)
+        _shadow_shader = gpu.shader.create_from_info(info)
+    return _shadow_shader
+
+
+# ---- Text ----
 
 def draw_message(region, message):
     """An error, wrapped, in the middle of the region."""

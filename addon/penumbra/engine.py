@@ -50,7 +50,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
 
     def _region(self):
         if self._viewport is None:
-            self._viewport = viewport.Viewport(self)
+            self._viewport = viewport.Viewport(viewport.EngineHost(self))
         return self._viewport
 
     def update_render_passes(self, scene=None, renderlayer=None):

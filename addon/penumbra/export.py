@@ -183,6 +183,15 @@ class SceneExport:
         self.scene.world_color[:] = color
 
 
+def changed_geometry(depsgraph):
+    """Addresses of the originals whose geometry changed. Undo and frame changes come without a list of updates: None,
+    which stands for anything."""
+    updates = list(depsgraph.updates)
+    if not updates:
+        return None
+    return {update.id.original.as_pointer() for update in updates if update.is_updated_geometry}
+
+
 class KeptMeshes:
     """Meshes kept from one export of a viewport to the next while Blender says that they did not change."""
 
@@ -191,12 +200,10 @@ class KeptMeshes:
         self._used = set()
         self._changed = None    # addresses of originals; None: anything
 
-    def begin(self, depsgraph):
-        """Before an export. Undo and frame changes come without a list of updates: everything is looked at again."""
-        updates = list(depsgraph.updates)
+    def begin(self, changed):
+        """Before an export; `changed`: see changed_geometry."""
         self._used = set()
-        self._changed = {update.id.original.as_pointer() for update in updates
-                         if update.is_updated_geometry} if updates else None
+        self._changed = changed
 
     def get(self, ob, create):
         data = ob.data

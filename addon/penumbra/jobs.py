@@ -16,6 +16,7 @@ class Job:
         self._handle = c_void_p()
         self.samples = settings.samples
         self.width, self.height = settings.crop[2:]
+        self.channels = 4 if settings.passes == capi.PASS_COMBINED else 3
         capi.library().render_start(context, byref(scene), byref(settings), byref(self._handle))
 
     def samples_done(self):
@@ -35,9 +36,9 @@ class Job:
         if self.is_done():
             image = capi.Image()
             capi.library().job_get_image(self._handle, 0, byref(image))
-            return (c_float * (4 * self.width * self.height)).from_address(image.pixels), self.samples
+            return (c_float * (self.channels * self.width * self.height)).from_address(image.pixels), self.samples
         count = c_uint32()
-        pixels = (c_float * (4 * self.width * self.height))()
+        pixels = (c_float * (self.channels * self.width * self.height))()
         capi.library().job_copy_image(self._handle, 0, pixels, len(pixels), byref(count))
         return pixels, count.value
 

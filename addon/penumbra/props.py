@@ -4,7 +4,8 @@
 from zlib import crc32
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, IntProperty, PointerProperty,
+                       StringProperty)
 from bpy.types import AddonPreferences, PropertyGroup
 
 from . import capi
@@ -92,6 +93,12 @@ def _scene_class(table, technique_classes):
             name="Latency", default=100, min=10, max=2000,
             description="Milliseconds within which a viewport shall follow input: its first picture has as many pixels "
                         "as fit into that time"),
+        'use_overlay': BoolProperty(
+            name="Soft Shadows", description="Multiply Penumbra's soft shadows over what other engines draw in viewports"),
+        'overlay_strength': FloatProperty(
+            name="Strength", default=1.0, min=0.0, max=1.0, subtype='FACTOR', description="1: as dark as they are"),
+        'overlay_color': FloatVectorProperty(
+            name="Colour", size=3, subtype='COLOR', min=0.0, max=1.0, description="What a whole shadow looks like"),
         'use_refine': BoolProperty(
             name="Refine", description="Let a viewport at rest go on to the reference, the ground truth"),
     }

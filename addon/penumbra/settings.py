@@ -20,10 +20,11 @@ def for_still(depsgraph, width, height):
     return settings
 
 
-def for_viewport(scene, width, height, crop, samples, is_reference):
+def for_viewport(scene, width, height, crop, samples, is_reference, image):
+    """`image`: the one pass wanted."""
     settings = _common(scene, 'REFERENCE' if is_reference else None, width, height)
     settings.samples = samples
-    settings.passes = capi.PASS_COMBINED
+    settings.passes = image
     settings.flags |= capi.SETTINGS_PROGRESSIVE
     settings.crop[:] = crop
     return settings

@@ -26,11 +26,34 @@ _FIRST, _SAMPLES, _REFERENCE = range(3)
 _viewports = weakref.WeakSet()
 
 
-class Viewport:
-    """What one region shows and what is being done for it. Lives as long as the region's engine."""
+class EngineHost:
+    """What a viewport needs of the region's engine, which Blender frees when it likes."""
 
     def __init__(self, engine):
         self._engine = weakref.ref(engine)
+
+    def tag_redraw(self):
+        """False if the engine is no more."""
+        try:
+            self._engine().tag_redraw()
+        except (AttributeError, ReferenceError):
+            return False
+        return True
+
+    def pixel_scale(self, scene):
+        """By the user's Viewport Pixel Size."""
+        return 1.0 / self._engine().get_preview_pixel_size(scene)
+
+    def show_status(self, text):
+        self._engine().update_stats("Penumbra", text)
+
+
+class Viewport:
+    """What one region shows and what is being done for it. Lives as long as the region's engine."""
+    image = capi.PASS_COMBINED
+
+    def __init__(self, host):
+        self._host = host
         self._exported = None
         self._meshes = export.KeptMeshes()
         self._visibility = None     # what decides which objects this viewport shows
@@ -86,7 +109,7 @@ class Viewport:
         self._error = ''
         self._visibility = _visibility(context.space_data)
         shows = None if not any(self._visibility) else context.space_data
-        self._meshes.begin(depsgraph)
+        self._meshes.begin(self.changes(depsgraph))
         exported = export.SceneExport(depsgraph, kept_meshes=self._meshes, shown_in=shows)
         if self._exported:
             self._exported.close()
@@ -95,8 +118,15 @@ class Viewport:
         self._version += 1
         self._schedule(context, depsgraph)
 
+    def changes(self, depsgraph):
+        return export.changed_geometry(depsgraph)
+
+    def is_stale(self):
+        """Whether the scene may have changed without an update."""
+        return self._exported is None
+
     def _draw(self, context, depsgraph):
-        if self._exported is None or self._visibility != _visibility(context.space_data):
+        if self.is_stale() or self._visibility != _visibility(context.space_data):
             self._update(context, depsgraph)
         else:
             self._schedule(context, depsgraph)
@@ -108,7 +138,7 @@ class Viewport:
         # A change of our settings does not update the evaluated scene.
         scene = depsgraph.scene
         wanted = Wanted(self._version, view.read(context, depsgraph.scene_eval), settings.viewport_key(scene),
-                        1.0 / self._engine().get_preview_pixel_size(scene))
+                        self._host.pixel_scale(scene))
         if wanted != self._wanted:
             self._wanted = wanted
             self._error = ''
@@ -127,7 +157,7 @@ class Viewport:
             _wake()
             return
         kind, self._next = self._next[0], None
-        self._run = Run(kind, self._wanted, self._exported, scene, self._speed)
+        self._run = Run(kind, self._wanted, self._exported, scene, self._speed, self.image)
         if kind == _FIRST and self._speed.expected(self._run.scale) <= _WAIT_MS:
             self._run.job.wait(_WAIT_MS)
         _wake()
@@ -142,7 +172,7 @@ class Viewport:
             if samples > run.samples_taken:
                 if run.kind == _FIRST:
                     self._speed.add(run.scale, run.elapsed_ms())
-                self._picture = Picture(run)
+                self._picture = self.make_picture(run)
         except capi.Error as error:
             self._stop_run()
             if error.result != capi.CANCELLED:
@@ -151,6 +181,9 @@ class Viewport:
             return
         if run.samples_taken == run.job.samples:
             self._finish(run)
+
+    def make_picture(self, run):
+        return Picture(run)
 
     def _finish(self, run):
         self._stop_run()
@@ -173,30 +206,17 @@ class Viewport:
 
     def poll(self):
         """Asks for a redraw when there is something to draw or to start; whether to be asked again."""
-        engine = self._engine()
-        if engine is None:
-            return False
         due = self._next is not None and self._run is None and time.monotonic() >= self._next[1]
-        if due or self._run and self._run.has_news():
-            try:
-                engine.tag_redraw()
-            except ReferenceError:  # Blender freed the engine
-                return False
+        if (due or self._run and self._run.has_news()) and not self._host.tag_redraw():
+            return False
         return not self.is_at_rest()
 
     def is_at_rest(self):
         return self._run is None and self._next is None
 
     def _show_status(self):
-        engine = self._engine()
-        if engine is None:
-            return
-        if self._error:
-            engine.update_stats("Penumbra", self._error.splitlines()[0])
-        elif self._picture:
-            engine.update_stats("Penumbra", self._picture.label)
-        else:
-            engine.update_stats("Penumbra", "Preparing")
+        self._host.show_status(self._error.splitlines()[0] if self._error else
+                               self._picture.label if self._picture else "Preparing")
 
 
 class Wanted(NamedTuple):
@@ -210,7 +230,7 @@ class Wanted(NamedTuple):
 class Run:
     """One job and the picture it makes."""
 
-    def __init__(self, kind, wanted, exported, scene, speed):
+    def __init__(self, kind, wanted, exported, scene, speed, image):
         self.kind, self.wanted = kind, wanted
         options = scene.penumbra
         self.scale = wanted.pixel_scale * (speed.choose(options.viewport_latency) if kind == _FIRST else 1.0)
@@ -219,7 +239,7 @@ class Run:
         self._options = options.technique, options.use_refine, options.viewport_samples
         width, height = (max(1, int(size * self.scale + 0.5)) for size in wanted.view[:2])
         values = settings.for_viewport(scene, width, height, view.crop(wanted.view, width, height),
-                                       1 if kind == _FIRST else options.viewport_samples, kind == _REFERENCE)
+                                       1 if kind == _FIRST else options.viewport_samples, kind == _REFERENCE, image)
         self.technique = values.technique.decode()
         self.size = width, height
         self.crop = tuple(values.crop)
@@ -254,16 +274,24 @@ class Picture:
 
     def __init__(self, run):
         pixels, run.samples_taken = run.job.picture()
-        self._texture = draw.make_texture(run.job.width, run.job.height, pixels)
+        self.texture = self.make_texture(run.job, pixels)
+        self.size = run.job.width, run.job.height
         self._crop, self._size = run.crop, run.size
         parts = [run.technique, f"sample {run.samples_taken} of {run.job.samples}"]
         if run.scale < 1.0:
             parts.append(f"{run.scale:.0%} resolution")
         self.label = ", ".join(parts)
 
-    def draw(self, region):
+    def make_texture(self, job, pixels):
+        return draw.make_texture(job.width, job.height, pixels)
+
+    def place(self, region):
+        """x, y, width, height in pixels of the region."""
         x, y = region.width / self._size[0], region.height / self._size[1]
-        draw.draw_picture(self._texture, self._crop[0] * x, self._crop[1] * y, self._crop[2] * x, self._crop[3] * y)
+        return self._crop[0] * x, self._crop[1] * y, self._crop[2] * x, self._crop[3] * y
+
+    def draw(self, region):
+        draw.draw_picture(self.texture, *self.place(region))
 
 
 class Speed:

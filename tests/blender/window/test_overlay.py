@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Soft shadows over what other engines draw."""
+
+import bpy
+
+import display
+from harness import output
+from window import ViewportTest, psnr
+
+
+def to_linear(value):
+    """Of display values: Blender blends overlays by a power of 2.2."""
+    return (value / 255.0) ** 2.2
+
+
+class Overlay(ViewportTest):
+    def setUp(self):
+        super().setUp()
+        self.still_life()
+        self.look_through_camera()
+        self.scene.penumbra.samples = self.scene.penumbra.viewport_samples
+        space = self.space()
+        # Overlays are on, but none except ours.
+        space.overlay.show_overlays = True
+        for name in ('show_floor', 'show_axis_x', 'show_axis_y', 'show_text', 'show_stats', 'show_cursor', 'show_extras',
+                     'show_outline_selected', 'show_object_origins', 'show_ortho_grid', 'show_relationship_lines'):
+            setattr(space.overlay, name, False)
+
+    def shadow(self):
+        """The Shadow pass by F12, of the region's pixels, rows top-down."""
+        engine = self.scene.render.engine
+        self.scene.render.engine = 'PENUMBRA'
+        self.layer.use_pass_shadow = True
+        with self.window():
+            width, _height, red = self.render("overlay-shadow")['ViewLayer.Shadow.R']
+        self.layer.use_pass_shadow = False
+        self.scene.render.engine = engine
+        return [red[start:start + width] for start in range(len(red) - width, -1, -width)]
+
+    def check(self, engine, shading, name):
+        self.scene.render.engine = engine
+        self.space().shading.type = shading
+        without = yield from self.shown(name + "-without")
+        self.scene.penumbra.use_overlay = True
+        with_shadow = yield from self.shown(name + "-with")
+        light = [value for row in self.shadow() for value in row for _channel in range(3)]
+        expected = bytes(int(255.0 * (to_linear(value) * share) ** (1.0 / 2.2) + 0.5)
+                         for value, share in zip(without.rgb, light))
+        expected = display.Picture(*without[:2], expected)
+        expected.save(output(name + "-expected.ppm"))
+        value = psnr(with_shadow, expected)
+        print(f"{name}: {psnr(with_shadow, without):.1f} dB from the picture without, {value:.1f} dB from the product")
+        self.assertLess(psnr(with_shadow, without), 30.0)
+        # 8 bits of alpha and of colour, twice rounded; dark tones are spread by the power.
+        self.assertGreaterEqual(value, 40.0)
+
+    def test_workbench(self):
+        self.space().shading.light = 'FLAT'
+        yield from self.check('BLENDER_WORKBENCH', 'SOLID', "overlay-workbench")
+
+    def test_follows_edits(self):
+        self.space().shading.type = 'SOLID'
+        self.scene.penumbra.use_overlay = True
+        before = yield from self.shown("overlay-before")
+        bpy.data.objects["Cube"].location.x += 1.0
+        after = yield from self.shown("overlay-moved")
+        bpy.data.lights["Key"].size = 3.0
+        larger = yield from self.shown("overlay-larger")
+        self.assertEqual(len({before.rgb, after.rgb, larger.rgb}), 3)
+        self.scene.penumbra.use_overlay = False
+        plain = yield from self.shown("overlay-off")
+        self.scene.penumbra.use_overlay = True
+        self.assertFalse(plain == larger)
+        self.assertTrue(larger == (yield from self.shown("overlay-on")))
