@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "common_camera.glsl"
+
 // How far the map coordinate of a receiver moves from pixel to pixel, on the receiver's tangent plane.
+
+// A pass over tiles has no pixel, and uses no footprint.
+#ifdef WHOLE_TILES
+const vec2 footprint_pixel = vec2(0.5);
+#else
+#define footprint_pixel gl_FragCoord.xy
+#endif
 
 // Map coordinate where the ray through a full-image coordinate meets the tangent plane.
 vec2 footprint_point(receiver r, vec2 coordinate) {
@@ -16,7 +25,7 @@ vec2 footprint_point(receiver r, vec2 coordinate) {
 
 // Columns: texels per pixel to the right and up.
 mat2 receiver_footprint(receiver r) {
-    vec2 coordinate = camera_pixel(gl_FragCoord.xy);
+    vec2 coordinate = camera_pixel(footprint_pixel);
     // A tenth of a pixel: over a whole one a grazing ray may miss the plane.
     vec2 right = footprint_point(r, coordinate + vec2(0.1, 0.0)) - footprint_point(r, coordinate - vec2(0.1, 0.0));
     vec2 up = footprint_point(r, coordinate + vec2(0.0, 0.1)) - footprint_point(r, coordinate - vec2(0.0, 0.1));

@@ -2,6 +2,7 @@
 // Tiles that are wholly lit or wholly in umbra by the bounding planes of the shadow map, with bounds of the tile's
 // receivers in the place of one receiver's values. A decided tile has exactly the visibility that
 // the technique would compute at each of its pixels.
+#define WHOLE_TILES
 #include "common_light.glsl"
 #include "common_shadow.glsl"
 #include "common_planes.glsl"
@@ -108,7 +109,7 @@ float classify_tile(tile t, region bounds, int layer) {
     vec2 texel = r.texel_size * (is_perspective() ? vec2(near, far) : vec2(1.0));
     float radius = max(extent.x, extent.y) * texel.y;
     float doubt = 1.5 * t.normal.w / facing;
-    if (!(facing > 0.0 && doubt < 0.1))
+    if (!(facing > 0.0 && doubt < 0.1 && extent.x >= 0.0))
         return 0.5;
     // The least and the greatest bias that receiver_set_bias can have added.
     plane.x += 0.15 * texel.x - max(doubt - 5e-4, 0.0) * radius - rounding;

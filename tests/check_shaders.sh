@@ -10,7 +10,7 @@ here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 sources=$(mktemp -d)
 trap 'rm -rf "$sources"' EXIT
 
-check "test_door renders" env MESA_SHADER_DUMP_PATH="$sources" "$1/test_door" bad_materials bad_lights
+check "test_door renders" env MESA_SHADER_DUMP_PATH="$sources" "$1/test_door" bad_materials bad_lights parameter_ranges
 for source in "$sources"/*.glsl; do
     case ${source##*/} in
     VS_*) stage=vert ;;

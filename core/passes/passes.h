@@ -74,6 +74,22 @@ pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struc
 /* gauss.c: texture, any float format with a layer per view -> the same, convolved with a Gaussian of 3, 5 or 7 texels
  * (binomial weights), level 0 only. Beyond the border lie copies of its last row and column. */
 pnb_result pass_gauss(struct frame *frame, struct gl_texture *texture, int width);
+/* Summed-area tables: at each texel the sum of what lies left of, below and at it within its tile. */
+struct summed_area {
+    int channels;       /* 1 or 2 */
+    int tile;           /* texels along the side of a tile, a power of two; from the table's side on: one tile */
+    bool floats;        /* float32 sums, whose error grows with the table, instead of integers */
+    float scale;        /* integers: sums of round(value * scale), which wrap around. A rectangle's sum is exact while
+                         * the rectangle's own sum is below 2^32 */
+    const char *values; /* shader file with `vec4 summed_value(ivec3 texel)`: the values, of x and y, 0..1 */
+    /* Binds what that file reads; image unit 0 is taken. */
+    void (*bind)(struct frame *frame, GLuint program, const void *user);
+    const void *user;
+};
+/* Format of a table: 32-bit integers, or with `floats` the bits of floats. */
+GLenum summed_area_format(int channels);
+/* summed_area.c: values -> one level of table, summed_area_format, a layer per view. */
+pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums, const struct gl_texture *table, int level);
 /* planes.c: light->shadow_map -> light->planes, RGBA32F, a texel per 4 x 4 texels with all levels: see
  * common_planes.glsl. Needs the light's block. */
 pnb_result pass_planes(struct frame *frame, struct frame_light *light);

@@ -35,6 +35,7 @@ struct frame_light {
     struct light_views views;
     struct gl_texture shadow_map, min_max, planes; /* a layer per view; kept over the samples of a pixel */
     struct gl_texture prefiltered[MAX_PREFILTERED]; /* the same, of the technique's own making */
+    int prefiltered_tile; /* of summed-area tables among them: texels along the side of a tile */
 };
 
 /* Images of a job; those of the lights follow one another. */

@@ -20,9 +20,9 @@ enum technique_needs {
     NEEDS_ALL_CASTERS = 2  /* the map holds the nearest fragment, however transparent */
 };
 
-/* Parameter of a technique whose shader has `vec2 technique_extent(receiver r, out vec2 depths)`, the rectangle that
- * holds its taps, and that yields exactly 1 or 0 where nothing or everything in it blocks. If it is on, tiles of the image
- * that are decided by the min-max pyramid are not drawn by the technique. */
+/* Parameter of a technique whose shader has `vec2 technique_extent(receiver r)`, the rectangle that holds its taps
+ * (negative: decide nothing), and that yields 1 or 0 where nothing or everything in it blocks. If it is on, tiles of the
+ * image that are decided by the min-max pyramid are not drawn by the technique. */
 #define SKIP_PARAMETER "min_max"
 
 struct technique {
