@@ -8,6 +8,8 @@ layout(location = 3) in vec4 instance_x;    // rows of object to relative world
 layout(location = 4) in vec4 instance_y;
 layout(location = 5) in vec4 instance_z;
 layout(location = 6) in vec2 instance_traits; // x: 1 = receives shadows; y: 1 = holdout, 0.5 = shadow catcher
+layout(location = 7) in uvec2 instance_unlit_by; // bits of the lights that do not light it
+layout(location = 8) in vec3 vertex_color;       // square roots
 
 vec3 instance_position() {
     vec4 p = vec4(vertex_position, 1.0);

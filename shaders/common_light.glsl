@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One light and the views of its shadow maps (passes.h: struct light_block). Terms as in core/render/light.h.
-// LIGHT_TYPE, ELLIPSE and SINGLE_VIEW come from light_defines() in visibility.c.
+// LIGHT_TYPE, ELLIPSE, SINGLE_VIEW and SPREAD come from light_defines() in visibility.c.
 
 struct light_view {
     mat4 from_world;
@@ -16,7 +16,7 @@ layout(std140, binding = 1) uniform light_block {
     vec4 frame_x, frame_y, frame_z; // frame_z: direction of emission; frame_y.w: 1 = SPOT that falls with the cosine to its axis
     vec4 half_u, half_v;         // AREA: half axes
     vec4 emission;               // rgb; w: radius of POINT and SPOT
-    vec4 cone;                   // SPOT: cosine of the half angle, blend, scale of X and Y
+    vec4 cone;                   // SPOT: cosine of the half angle, blend, scale of X and Y. AREA: x = tangent of half the spread
     ivec4 faces_a, faces_b;      // map layer of the faces +Z +X -X +Y | -Y -Z, -1: none
     float tan_half_angle;        // SUN
     float casts_shadow;
@@ -61,6 +61,17 @@ float light_cone(vec3 position) {
     float edge = width > 0.0 ? smoothstep(0.0, 1.0, (c - light.cone.x) / width) : 1.0;
     return light.frame_y.w != 0.0 ? edge * c : edge;
 }
+
+#ifdef SPREAD
+// Share of an area light's radiance that leaves its grid towards a point: the slats hide the rest (Blender D10594). It is
+// normalised so that the light's power stays what it is.
+float light_spread(vec3 to_light) {
+    float facing = -dot(to_light, light.frame_z.xyz);
+    float sine = length(cross(to_light, light.frame_z.xyz));
+    float open = max(light.cone.x * facing - sine, 0.0) / max(facing, 1e-12);
+    return facing > 0.0 ? open / (light.cone.x - atan(light.cone.x)) : 0.0;
+}
+#endif
 
 // Whether any of the light can reach a surface point, were nothing in between. Never false where it can.
 bool light_reaches(vec3 position, vec3 normal) {

@@ -11,6 +11,12 @@ out vec3 position;
 out vec3 normal;
 out vec2 uv;
 flat out vec2 traits;
+#ifdef SPECIAL
+out vec3 tint;
+#endif
+#ifdef LINKS
+flat out uvec2 unlit_by;
+#endif
 
 void main() {
     position = instance_position();
@@ -22,6 +28,10 @@ void main() {
     normal *= side;
 #ifdef SPECIAL
     mirrored = side < 0.0 ? 1 : 0;
+    tint = vertex_color * vertex_color;
+#endif
+#ifdef LINKS
+    unlit_by = instance_unlit_by;
 #endif
     uv = vertex_uv;
     traits = instance_traits;

@@ -20,7 +20,11 @@ float sample_weight(vec3 position, vec3 normal) {
     vec3 to_light = light.position.xyz - position;
     float d2 = dot(to_light, to_light);
     float facing = emitter_normal.w != 0.0 ? max(-dot(to_light, emitter_normal.xyz), 0.0) : sqrt(d2);
-    return max(dot(normal, to_light), 0.0) * facing / max(d2 * d2, 1e-20);
+    float weight = max(dot(normal, to_light), 0.0) * facing / max(d2 * d2, 1e-20);
+#ifdef SPREAD
+    weight *= light_spread(to_light);
+#endif
+    return weight;
 }
 
 #ifdef TRANSLUCENT

@@ -15,6 +15,10 @@ uniform sampler2D gbuffer_depth, gbuffer_normal, gbuffer_color;
 #ifdef EMISSION
 uniform sampler2D gbuffer_emission;
 #endif
+#ifdef LINKS
+uniform usampler2D gbuffer_links;
+uniform int light_number;
+#endif
 uniform vec4 world; // rgb; a: 0 = transparent film
 
 layout(location = 0) out vec4 out_combined;
@@ -54,6 +58,10 @@ void main() {
     if (covered && v.a > 0.0) {
         visible = v.rgb / v.a;
         irradiance = light.emission.rgb * light_irradiance(position, normal);
+#ifdef LINKS
+        uvec2 unlit_by = texelFetch(gbuffer_links, pixel, 0).xy;
+        irradiance *= float(1u - ((light_number < 32 ? unlit_by.x : unlit_by.y) >> uint(light_number & 31) & 1u));
+#endif
         radiance = color / PI * irradiance * visible;
     }
 #endif

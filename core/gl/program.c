@@ -117,7 +117,7 @@ static pnb_result shader_compile(const struct gl *gl, GLenum stage, const char *
     pnb_result result = PNB_OK;
     if (!source_append(&source, version, sizeof version - 1))
         result = PNB_ERROR_OUT_OF_MEMORY;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < MAX_DEFINES; i++)
         if (desc->defines[i] && !source_append(&source, desc->defines[i], strlen(desc->defines[i])))
             result = PNB_ERROR_OUT_OF_MEMORY;
     if (result == PNB_OK)
@@ -192,10 +192,11 @@ static bool strings_equal(const char *a, const char *b) {
 }
 
 static bool descs_equal(const struct program_desc *a, const struct program_desc *b) {
+    for (int i = 0; i < MAX_DEFINES; i++)
+        if (!strings_equal(a->defines[i], b->defines[i]))
+            return false;
     return strings_equal(a->vertex, b->vertex) && strings_equal(a->fragment, b->fragment) &&
-           strings_equal(a->compute, b->compute) && strings_equal(a->technique, b->technique) &&
-           strings_equal(a->defines[0], b->defines[0]) && strings_equal(a->defines[1], b->defines[1]) &&
-           strings_equal(a->defines[2], b->defines[2]);
+           strings_equal(a->compute, b->compute) && strings_equal(a->technique, b->technique);
 }
 
 static pnb_result program_add(struct program_cache *cache, const struct program_desc *desc) {

@@ -6,10 +6,12 @@
 
 #include "gl.h"
 
+#define MAX_DEFINES 4
+
 struct program_desc {
     const char *vertex, *fragment, *compute; /* file names; either compute or the other two */
     const char *technique;                   /* file for `#include "technique"`, or NULL */
-    const char *defines[3];                  /* lines put after #version, or NULL */
+    const char *defines[MAX_DEFINES];        /* lines put after #version, or NULL */
 };
 
 /* Programs made so far. All strings of a program_desc must be static: they are the key. */

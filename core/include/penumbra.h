@@ -29,7 +29,7 @@
 
 #define PNB_VERSION "0.1.0"
 /* Raised by every change of this header that is not a pure addition. */
-#define PNB_API_VERSION 3u
+#define PNB_API_VERSION 4u
 
 #ifdef PNB_BUILD
 #define PNB_API __attribute__((visibility("default")))
@@ -154,6 +154,9 @@ typedef struct pnb_mesh_desc {
     pnb_array triangles;          /* uint32[3] corners of each triangle, counter-clockwise seen from the front */
     pnb_array triangle_polygons;  /* uint32 polygon of each triangle; absent: polygon i is triangle i */
     pnb_array polygon_materials;  /* int32 material slot of each polygon, below 0 counts as 0; absent: slot 0 */
+    pnb_array corner_colors;      /* float[3] per corner, linear, kept in 8 bits between 0 and 1; for materials with
+                                   * PNB_MATERIAL_VERTEX_COLOR; absent: vertex_colors */
+    pnb_array vertex_colors;      /* float[3] per vertex; absent: white */
 } pnb_mesh_desc;
 
 /* Copies a mesh. Triangles that use non-finite positions or out-of-range indices are dropped, and zero-area ones
@@ -161,34 +164,71 @@ typedef struct pnb_mesh_desc {
  * creating one again for an unchanged object uploads nothing. The caller owns *mesh; jobs keep what they use. */
 PNB_API pnb_result pnb_mesh_create(const pnb_mesh_desc *desc, pnb_mesh **mesh);
 PNB_API void pnb_mesh_destroy(pnb_mesh **mesh);
+/* Curves as thin tubes, such as hair: a mesh of prisms of three sides, as wide on average as a round tube, with its
+ * normals. Curve i has the points first_points[i] .. first_points[i + 1] - 1. Its uv is that of the curve everywhere.
+ */
+typedef struct pnb_strands_desc {
+    uint32_t struct_size;
+    uint32_t point_count;
+    uint32_t strand_count;
+    uint32_t reserved;
+    const char *name;       /* for messages; NULL: "strands" */
+    pnb_array positions;    /* float[3] per point, metres in object space */
+    pnb_array radii;        /* float per point, metres; absent: 0.005 */
+    pnb_array first_points; /* uint32 per strand, ascending */
+    pnb_array uvs;          /* float[2] per strand; absent: zero */
+} pnb_strands_desc;
+
+PNB_API pnb_result pnb_mesh_create_strands(const pnb_strands_desc *desc, pnb_mesh **mesh);
+
+/* Points as little polyhedra of 80 triangles, of 20 where there are many, as large on average as round ones, with their
+ * normals. */
+typedef struct pnb_points_desc {
+    uint32_t struct_size;
+    uint32_t point_count;
+    const char *name;    /* for messages; NULL: "points" */
+    pnb_array positions; /* float[3] per point, metres in object space */
+    pnb_array radii;     /* float per point, metres; absent: 0.05 */
+} pnb_points_desc;
+
+PNB_API pnb_result pnb_mesh_create_points(const pnb_points_desc *desc, pnb_mesh **mesh);
+
 /* What was wrong with the data, naming the mesh; "" if nothing. Owned by the mesh. */
 PNB_API const char *pnb_mesh_warning(const pnb_mesh *mesh);
 
 typedef struct pnb_texture pnb_texture;
+
+enum pnb_texture_flags {
+    PNB_TEXTURE_NEAREST = 1, /* unfiltered: each texel is a square */
+    PNB_TEXTURE_EXTEND = 2,  /* beyond its edges the texels at the edges go on */
+    PNB_TEXTURE_CLIP = 4,    /* beyond its edges all channels are 0 */
+    PNB_TEXTURE_MIRROR = 8   /* beyond its edges it is mirrored */
+};
 
 typedef struct pnb_texture_desc {
     uint32_t struct_size;
     uint32_t width, height; /* texels, 1..16384 */
     uint32_t channels;      /* floats per texel, 1..4: grey, grey + alpha, RGB, RGBA */
     uint32_t is_srgb;       /* 1: the colour channels are sRGB-encoded and are decoded to linear; alpha never is */
-    uint32_t reserved;
+    uint32_t flags;         /* enum pnb_texture_flags; 0: filtered with mip maps, repeated in both directions */
     const char *name;       /* for messages; NULL: "texture" */
     pnb_array pixels;       /* `channels` floats per texel, rows bottom-up; not-finite values become 0 */
 } pnb_texture_desc;
 
-/* Copies an image. It repeats in both directions and is filtered with mip maps. The caller owns *texture. */
+/* Copies an image. The caller owns *texture. */
 PNB_API pnb_result pnb_texture_create(const pnb_texture_desc *desc, pnb_texture **texture);
 PNB_API void pnb_texture_destroy(pnb_texture **texture);
 
 /* ---- Scene ------------------------------------------------------------------------------------------------ */
 
 enum pnb_material_flags {
-    PNB_MATERIAL_CULL_CAMERA = 1, /* the camera does not see back faces */
-    PNB_MATERIAL_CULL_SHADOW = 2, /* back faces, seen from the light, cast no shadow */
-    PNB_MATERIAL_HOLDOUT = 4,     /* cuts a hole into the image: 0 with alpha 0 */
-    PNB_MATERIAL_TINTED = 8,      /* what shines through is multiplied with base_color_texture, too */
-    PNB_MATERIAL_NO_SHADOW = 16,  /* casts no shadow */
-    PNB_MATERIAL_OPAQUE_SHADOW = 32 /* casts shadows as if it were opaque */
+    PNB_MATERIAL_CULL_CAMERA = 1,    /* the camera does not see back faces */
+    PNB_MATERIAL_CULL_SHADOW = 2,    /* back faces, seen from the light, cast no shadow */
+    PNB_MATERIAL_HOLDOUT = 4,        /* cuts a hole into the image: 0 with alpha 0 */
+    PNB_MATERIAL_TINTED = 8,         /* what shines through is multiplied with base_color_texture, too */
+    PNB_MATERIAL_NO_SHADOW = 16,     /* casts no shadow */
+    PNB_MATERIAL_OPAQUE_SHADOW = 32, /* casts shadows as if it were opaque */
+    PNB_MATERIAL_VERTEX_COLOR = 64   /* base_color is multiplied with the mesh's colours */
 };
 
 typedef struct pnb_material {
@@ -203,6 +243,7 @@ typedef struct pnb_material {
     float absorption[3];                   /* 0..1, the share of each channel that is lost of the light that shines
                                             * through; 0: clear. What passes is transparency * (1 - absorption) */
     const pnb_texture *emission_texture;   /* NULL: none */
+    float uv_matrix[6]; /* texture coordinates are these two rows times (u, v, 1); all zero: (u, v) */
 } pnb_material;
 
 enum pnb_instance_flags {
@@ -223,6 +264,8 @@ typedef struct pnb_instance {
     uint32_t slot_count;     /* a mesh slot beyond the last uses the last; 0: grey 0.8, opaque */
     float matrix[16];        /* object to world; mirrored is fine; not finite: the instance is dropped with a
                               * warning; singular: it is drawn as flat as it is */
+    uint64_t unlit_by;       /* light linking. Bit i: scene.lights[i] does not light it */
+    uint64_t unshadowed_by;  /* shadow linking. Bit i: it casts no shadow in the light of scene.lights[i] */
 } pnb_instance;
 
 typedef enum pnb_light_type { PNB_LIGHT_AREA = 0, PNB_LIGHT_POINT = 1, PNB_LIGHT_SPOT = 2, PNB_LIGHT_SUN = 3 } pnb_light_type;
@@ -248,6 +291,8 @@ typedef struct pnb_light {
     float angle;            /* SUN: angular diameter, 0..pi, 0: hard */
     float spot_angle;       /* SPOT: full cone angle, 0..pi; 0: pi / 4 */
     float spot_blend;       /* SPOT: 0..1, the share of the cone over which its edge fades */
+    float spread;           /* AREA: full angle of the cone that each of its points shines into, as through a honeycomb
+                             * grid that leaves the whole power; 0 or pi: no grid */
 } pnb_light;
 
 typedef enum pnb_projection { PNB_PERSPECTIVE = 0, PNB_ORTHOGRAPHIC = 1 } pnb_projection;

@@ -58,7 +58,7 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
     GLuint programs[2];
     if ((result = use_programs(frame, view, collect, casters, layer, map->width, clip, programs)) != PNB_OK)
         return result;
-    return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW,
+    return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, (uint64_t)1 << frame->light,
                           &(struct draw_programs){programs[0], programs[1], casters, PNB_MATERIAL_CULL_SHADOW});
 }
 

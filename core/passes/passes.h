@@ -14,7 +14,8 @@
 /* One light as common_light.glsl reads it (std140). */
 struct light_block {
     struct light_view views[MAX_LIGHT_VIEWS];
-    vec4 position, frame_x, frame_y, frame_z, half_u, half_v, emission, cone;
+    vec4 position, frame_x, frame_y, frame_z, half_u, half_v, emission,
+        cone; /* cone.x of an AREA: see common_light.glsl */
     int32_t faces_a[4], faces_b[4];
     float tan_half_angle, casts_shadow;
     int32_t view_count;
@@ -36,6 +37,7 @@ struct renderer {
     /* G-buffer, of the full image's size: see common_camera.glsl for the contents. */
     struct gl_texture gbuffer_depth, gbuffer_normal, gbuffer_color, gbuffer_z;
     struct gl_texture gbuffer_emission; /* exists only while something emits */
+    struct gl_texture gbuffer_links; /* RG32UI: bits of the lights that do not light a pixel; only with light linking */
     struct gl_texture
         visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
     /* Sums over the samples, RGBA32F, W x H. */

@@ -68,10 +68,12 @@ static const struct gl_texture *if_made(const struct gl_texture *texture) {
 static pnb_result use_program(struct frame *frame, const struct frame_light *light, bool first, bool tiles,
                               GLuint *program) {
     const char *const first_define = frame->scene->emissive ? "#define FIRST\n#define EMISSION\n" : "#define FIRST\n";
+    const bool links = light && frame->scene->light_linked;
     const struct program_desc desc = {.vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
                                       .fragment = "pass_shading.frag",
                                       .defines = {light ? light_defines(&light->emitter, &light->views) : NULL,
-                                                  first ? first_define : NULL, tiles ? "#define TILES\n" : NULL}};
+                                                  first ? first_define : NULL, tiles ? "#define TILES\n" : NULL,
+                                                  links ? "#define LINKS\n" : NULL}};
     return program_use(&frame->renderer->programs, &desc, program);
 }
 
@@ -101,6 +103,10 @@ pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bo
     bind_gbuffer(renderer, program);
     gl_texture_bind(gl, frame->scene->emissive ? &renderer->gbuffer_emission : &renderer->gbuffer_color, 5);
     program_set_int(gl, program, "gbuffer_emission", 5);
+    if (frame->scene->light_linked)
+        gl_texture_bind(gl, &renderer->gbuffer_links, 6);
+    program_set_int(gl, program, "gbuffer_links", 6);
+    program_set_int(gl, program, "light_number", (int)frame->light);
     gl_texture_bind(gl, &renderer->visibility, 3);
     program_set_int(gl, program, "visibility", 3);
     set_world(frame, program);

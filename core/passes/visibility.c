@@ -16,7 +16,7 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
     glm_vec4((float *)emitter->half_u, 0.0f, block.half_u);
     glm_vec4((float *)emitter->half_v, 0.0f, block.half_v);
     glm_vec4((float *)emitter->emission, emitter->radius, block.emission);
-    block.cone[0] = emitter->cos_cone;
+    block.cone[0] = emitter->type == PNB_LIGHT_AREA ? emitter->tan_half_spread : emitter->cos_cone;
     block.cone[1] = emitter->blend;
     block.cone[2] = emitter->cone_scale[0];
     block.cone[3] = emitter->cone_scale[1];
@@ -40,19 +40,21 @@ void bind_gbuffer(struct renderer *renderer, GLuint program) {
     }
 }
 
+#define DEFINES(type, ellipse, spread)                                                                                 \
+    {                                                                                                                  \
+        "#define LIGHT_TYPE " #type "\n#define ELLIPSE " #ellipse "\n" spread,                                         \
+            "#define LIGHT_TYPE " #type "\n#define ELLIPSE " #ellipse "\n#define SINGLE_VIEW\n" spread                 \
+    }
+
 const char *light_defines(const struct emitter *emitter, const struct light_views *views) {
-    static const char *const single[][2] = {
-        [PNB_LIGHT_AREA] = {"#define LIGHT_TYPE 0\n#define ELLIPSE 0\n#define SINGLE_VIEW\n",
-                            "#define LIGHT_TYPE 0\n#define ELLIPSE 1\n#define SINGLE_VIEW\n"},
-        [PNB_LIGHT_POINT] = {NULL, "#define LIGHT_TYPE 1\n#define ELLIPSE 1\n#define SINGLE_VIEW\n"},
-        [PNB_LIGHT_SPOT] = {NULL, "#define LIGHT_TYPE 2\n#define ELLIPSE 1\n#define SINGLE_VIEW\n"},
-        [PNB_LIGHT_SUN] = {NULL, "#define LIGHT_TYPE 3\n#define ELLIPSE 1\n#define SINGLE_VIEW\n"}};
-    static const char *const faces[][2] = {
-        [PNB_LIGHT_AREA] = {"#define LIGHT_TYPE 0\n#define ELLIPSE 0\n", "#define LIGHT_TYPE 0\n#define ELLIPSE 1\n"},
-        [PNB_LIGHT_POINT] = {NULL, "#define LIGHT_TYPE 1\n#define ELLIPSE 1\n"},
-        [PNB_LIGHT_SPOT] = {NULL, "#define LIGHT_TYPE 2\n#define ELLIPSE 1\n"},
-        [PNB_LIGHT_SUN] = {NULL, "#define LIGHT_TYPE 3\n#define ELLIPSE 1\n"}};
-    return (views->single ? single : faces)[emitter->type][emitter->ellipse];
+    static const char *const area[2][2][2] = {{DEFINES(0, 0, ""), DEFINES(0, 0, "#define SPREAD\n")},
+                                              {DEFINES(0, 1, ""), DEFINES(0, 1, "#define SPREAD\n")}};
+    static const char *const others[][2] = {[PNB_LIGHT_POINT] = DEFINES(1, 1, ""),
+                                            [PNB_LIGHT_SPOT] = DEFINES(2, 1, ""),
+                                            [PNB_LIGHT_SUN] = DEFINES(3, 1, "")};
+    const bool spread = emitter->tan_half_spread > 0.0f;
+    return emitter->type == PNB_LIGHT_AREA ? area[emitter->ellipse][spread][views->single]
+                                           : others[emitter->type][views->single];
 }
 
 const char *technique_defines(const struct settings *settings) {

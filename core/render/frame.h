@@ -51,6 +51,7 @@ struct frame {
     struct camera_block camera;
     int width, height;         /* of the crop */
     uint32_t sample;           /* anti-aliasing sample being drawn */
+    uint32_t light;            /* light being drawn */
     uint32_t sums_samples;     /* in the sums, with the one being drawn */
 
     struct box *receivers;     /* what the camera sees, by tiles; see tiles.c */

@@ -112,6 +112,7 @@ static void mesh_upload(struct gpu_cache *cache, const pnb_mesh *from, struct gp
     attribute(gl, 0, 3, GL_FLOAT, GL_FALSE, offsetof(struct vertex, position));
     attribute(gl, 1, 2, GL_SHORT, GL_TRUE, offsetof(struct vertex, normal));
     attribute(gl, 2, 2, GL_FLOAT, GL_FALSE, offsetof(struct vertex, uv));
+    attribute(gl, 8, 3, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(struct vertex, color));
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->index_buffer);
     gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(from->index_count * sizeof(uint32_t)), from->indices,
                    GL_STATIC_DRAW);
@@ -122,6 +123,10 @@ static void mesh_upload(struct gpu_cache *cache, const pnb_mesh *from, struct gp
                                 (const void *)(uintptr_t)(4 * sizeof(float) * i));
         gl->VertexAttribDivisor(3 + i, 1);
     }
+    gl->EnableVertexAttribArray(7);
+    gl->VertexAttribIPointer(7, 2, GL_UNSIGNED_INT, sizeof(struct instance_block),
+                             (const void *)offsetof(struct instance_block, unlit_by));
+    gl->VertexAttribDivisor(7, 1);
     gl->BindVertexArray(0);
 }
 
@@ -184,7 +189,15 @@ static pnb_result image_create(struct gpu_cache *cache, const pnb_texture *from,
     gl->TexStorage2D(GL_TEXTURE_2D, levels, GL_RGBA16F, (GLsizei)from->width, (GLsizei)from->height);
     gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)from->width, (GLsizei)from->height, GL_RGBA, GL_FLOAT, from->rgba);
     gl->GenerateMipmap(GL_TEXTURE_2D);
-    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    const bool nearest = from->flags & PNB_TEXTURE_NEAREST;
+    const GLint wrap = from->flags & PNB_TEXTURE_CLIP     ? GL_CLAMP_TO_BORDER
+                       : from->flags & PNB_TEXTURE_EXTEND ? GL_CLAMP_TO_EDGE
+                       : from->flags & PNB_TEXTURE_MIRROR ? GL_MIRRORED_REPEAT
+                                                          : GL_REPEAT;
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, nearest ? GL_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, nearest ? GL_NEAREST : GL_LINEAR);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
+    gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
     pnb_result result = gl_check(gl, "texture upload");
     if (result == PNB_OK) {
         *out = image;

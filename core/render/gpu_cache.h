@@ -12,7 +12,7 @@ struct instance_block {
     float rows[3][4]; /* object to relative world */
     float receives;          /* 1 or 0 */
     float hidden;            /* 1 = holdout, 0.5 = shadow catcher */
-    float padding[2];
+    uint32_t unlit_by[2];    /* scene_instance.unlit_by, low and high half */
 };
 
 /* What every cached object begins with. */
@@ -45,7 +45,7 @@ struct gpu_table {
 
 struct gpu_cache {
     const struct gl *gl;
-    GLuint instance_buffer;       /* attributes 3 to 6 of every vertex array: instance_block */
+    GLuint instance_buffer; /* attributes 3 to 7 of every vertex array: instance_block */
     struct gpu_table meshes, images;
     uint64_t frame, bytes;
 };

@@ -22,6 +22,7 @@ struct gpu_material {
     vec4 clearness;  /* rgb, 1 = tinted by base_color_texture */
     const struct gpu_image *base_color_texture, *alpha_texture, *emission_texture;
     bool alpha_is_grey, transparent, translucent, textured;
+    vec4 uv_rows[2];
     uint32_t flags;
 };
 
@@ -33,6 +34,7 @@ struct gpu_scene {
     struct instance_block *instances;
     struct box *bounds;   /* per instance, relative world */
     uint32_t *flags;      /* per instance */
+    uint64_t *unshadowed_by; /* per instance */
     struct draw *draws;
     struct gpu_material *materials;
     struct instance_block *visible; /* scratch of gpu_scene_draw: what goes to instance_buffer */
@@ -53,12 +55,14 @@ static void free_frame_data(struct gpu_scene *scene) {
     memory_free(scene->instances);
     memory_free(scene->bounds);
     memory_free(scene->flags);
+    memory_free(scene->unshadowed_by);
     memory_free(scene->draws);
     memory_free(scene->materials);
     memory_free(scene->visible);
     scene->instances = scene->visible = NULL;
     scene->bounds = NULL;
     scene->flags = NULL;
+    scene->unshadowed_by = NULL;
     scene->draws = NULL;
     scene->materials = NULL;
     scene->instance_count = scene->draw_count = scene->material_count = 0;
@@ -108,7 +112,12 @@ static pnb_result load_materials(struct gpu_scene *scene, const struct scene *fr
         material->alpha_is_grey = source->alpha_texture && !source->alpha_texture->has_alpha;
         material->transparent = source->alpha < 1.0f || source->alpha_texture;
         material->translucent = material_is_translucent(source);
-        material->textured = source->base_color_texture || source->alpha_texture || source->emission_texture;
+        material->textured = source->base_color_texture || source->alpha_texture || source->emission_texture ||
+                             (source->flags & PNB_MATERIAL_VERTEX_COLOR);
+        for (int row = 0; row < 2; row++)
+            glm_vec4_copy((vec4){source->uv_matrix[3 * row], source->uv_matrix[3 * row + 1],
+                                 source->uv_matrix[3 * row + 2], 0.0f},
+                          material->uv_rows[row]);
     }
     return PNB_OK;
 }
@@ -150,8 +159,9 @@ static pnb_result load_instances(struct gpu_scene *scene, struct frame *frame) {
     scene->instances = memory_array(count, sizeof *scene->instances);
     scene->bounds = memory_array(count, sizeof *scene->bounds);
     scene->flags = memory_array(count, sizeof *scene->flags);
+    scene->unshadowed_by = memory_array(count, sizeof *scene->unshadowed_by);
     frame->casters = memory_array(count, sizeof *frame->casters);
-    if (!scene->instances || !scene->bounds || !scene->flags || !frame->casters)
+    if (!scene->instances || !scene->bounds || !scene->flags || !scene->unshadowed_by || !frame->casters)
         return PNB_ERROR_OUT_OF_MEMORY;
     scene->instance_count = count;
     for (uint32_t i = 0; i < count; i++) {
@@ -162,7 +172,10 @@ static pnb_result load_instances(struct gpu_scene *scene, struct frame *frame) {
         block->hidden = instance->flags & PNB_INSTANCE_HOLDOUT          ? 1.0f
                         : instance->flags & PNB_INSTANCE_SHADOW_CATCHER ? 0.5f
                                                                         : 0.0f;
+        block->unlit_by[0] = (uint32_t)instance->unlit_by;
+        block->unlit_by[1] = (uint32_t)(instance->unlit_by >> 32);
         scene->flags[i] = instance->flags;
+        scene->unshadowed_by[i] = instance->unshadowed_by;
         scene->bounds[i] = instance->mesh->index_count ? transform_box(instance->mesh->bounds, block->rows)
                                                        : (struct box){{FLT_MAX, 0, 0}, {-FLT_MAX, 0, 0}};
         if (!(instance->flags & PNB_INSTANCE_NO_SHADOW) && !box_is_empty(&scene->bounds[i]))
@@ -254,6 +267,9 @@ static void bind_material(const struct gl *gl, GLuint program, const struct gpu_
     const vec4 use = {material->base_color_texture ? 1.0f : 0.0f, material->alpha_texture ? 1.0f : 0.0f,
                       material->alpha_is_grey ? 0.0f : 1.0f, material->emission_texture ? 1.0f : 0.0f};
     program_set_vec4(gl, program, "texture_use", use);
+    program_set_vec4(gl, program, "uv_rows[0]", material->uv_rows[0]);
+    program_set_vec4(gl, program, "uv_rows[1]", material->uv_rows[1]);
+    program_set_int(gl, program, "use_vertex_color", (material->flags & PNB_MATERIAL_VERTEX_COLOR) != 0);
     program_set_int(gl, program, "base_color_texture", 0);
     program_set_int(gl, program, "alpha_texture", 1);
     program_set_int(gl, program, "emission_texture", 2);
@@ -283,14 +299,15 @@ static bool is_same_call(const struct draw *a, const struct draw *b) {
     return a->mesh == b->mesh && a->range == b->range && a->material == b->material;
 }
 
-pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hidden_by,
+pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hidden_by, uint64_t unshadowed_by,
                           const struct draw_programs *programs) {
     const struct gl *gl = scene->gl;
     bool *culled = memory_array(scene->instance_count, sizeof *culled);
     if (!culled)
         return PNB_ERROR_OUT_OF_MEMORY;
     for (uint32_t i = 0; i < scene->instance_count; i++)
-        culled[i] = (scene->flags[i] & hidden_by) || box_is_outside(&scene->bounds[i], clip);
+        culled[i] = (scene->flags[i] & hidden_by) || (scene->unshadowed_by[i] & unshadowed_by) ||
+                    box_is_outside(&scene->bounds[i], clip);
     uint32_t count = 0;
     for (uint32_t i = 0; i < scene->draw_count; i++)
         if (!culled[scene->draws[i].instance])

@@ -29,8 +29,8 @@ struct draw_programs {
 };
 
 /* Draws every instance inside the view volume of `clip` (relative world to clip space) that lacks the flag
- * `hidden_by`. */
-pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hidden_by,
+ * `hidden_by` and the bits `unshadowed_by`. */
+pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hidden_by, uint64_t unshadowed_by,
                           const struct draw_programs *programs);
 
 /* Nearest and farthest distance along the camera's axis of the visible instances, within the clip planes. */

@@ -41,6 +41,7 @@ void emitter_init(struct emitter *emitter, const struct scene_light *light, cons
         emitter->emission[i] = light->emission[i];
     }
     emitter_frame(m, emitter->frame);
+    emitter->tan_half_spread = tanf(0.5f * light->spread);
     if (light->type == PNB_LIGHT_POINT)
         glm_mat3_identity(emitter->frame); /* shines everywhere: its rotation must not change the shadow */
     if (light->type == PNB_LIGHT_POINT || light->type == PNB_LIGHT_SPOT)

@@ -25,6 +25,7 @@ struct emitter {
     vec3 position;         /* centre, relative world; unused for SUN */
     mat3 frame;            /* columns: orthonormal X, Y and Z = direction of emission, relative world */
     vec3 half_u, half_v;   /* AREA: half axes of the emitter, metres, relative world */
+    float tan_half_spread; /* AREA: 0 without a grid */
     float radius;          /* POINT, SPOT: metres */
     float tan_half_angle;  /* SUN */
     vec3 emission;

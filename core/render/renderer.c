@@ -52,7 +52,8 @@ void renderer_destroy(struct renderer **out) {
     struct gl_texture *const textures[] = {
         &renderer->gbuffer_depth, &renderer->gbuffer_normal,   &renderer->gbuffer_color, &renderer->gbuffer_z,
         &renderer->visibility,    &renderer->combined,         &renderer->shadowed,      &renderer->unshadowed,
-        &renderer->normal,        &renderer->gbuffer_emission, &renderer->caught,        &renderer->uncaught};
+        &renderer->normal,        &renderer->gbuffer_emission, &renderer->caught,        &renderer->uncaught,
+        &renderer->gbuffer_links};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         gl_texture_free(gl, textures[i]);
     for (int i = 0; i < MAX_LIGHTS; i++)
@@ -105,6 +106,7 @@ static enum translucency map_translucency(const struct frame *frame) {
 }
 
 static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *light) {
+    frame->light = (uint32_t)(light - frame->lights);
     if (light->views.count == 0 || frame->settings->technique->draw)
         return PNB_OK;
     pnb_result result = pass_shadow_map(frame, &light->views, map_translucency(frame), &light->shadow_map);
@@ -143,6 +145,7 @@ static pnb_result report(struct frame *frame, uint32_t light) {
 static pnb_result draw_light(struct frame *frame, uint32_t index) {
     struct renderer *renderer = frame->renderer;
     const struct frame_light *light = &frame->lights[index];
+    frame->light = index;
     pnb_result result = report(frame, index);
     if (result != PNB_OK)
         return result;

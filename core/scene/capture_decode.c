@@ -172,15 +172,18 @@ static pnb_result texture_check_content(const pnb_texture *texture) {
 static pnb_result decode_texture(struct byte_reader *reader, pnb_texture *texture) {
     pnb_result result = decode_present_string(reader, &texture->name);
     uint32_t width = read_u32(reader), height = read_u32(reader), has_alpha = read_u32(reader);
+    uint32_t flags = read_u32(reader);
     if (result != PNB_OK) {
         return result;
     }
-    if (width < 1 || width > TEXTURE_MAX_SIDE || height < 1 || height > TEXTURE_MAX_SIDE || has_alpha > 1) {
+    if (width < 1 || width > TEXTURE_MAX_SIDE || height < 1 || height > TEXTURE_MAX_SIDE || has_alpha > 1 ||
+        (flags & ~TEXTURE_FLAGS)) {
         return DAMAGED("texture '%s': its size is broken", texture->name);
     }
     texture->width = width;
     texture->height = height;
     texture->has_alpha = has_alpha == 1;
+    texture->flags = flags;
     result = decode_array(reader, (uint64_t)width * height, 4 * sizeof *texture->rgba, &texture->rgba);
     if (result == PNB_OK) {
         result = texture_check_content(texture);
@@ -193,7 +196,7 @@ static pnb_result decode_texture(struct byte_reader *reader, pnb_texture *textur
 
 static pnb_result decode_textures(struct decoder *decoder) {
     pnb_capture *capture = decoder->capture;
-    pnb_result result = decode_elements(decoder, 4 * sizeof(uint32_t) + 4 * sizeof(float), sizeof *capture->textures,
+    pnb_result result = decode_elements(decoder, 5 * sizeof(uint32_t) + 4 * sizeof(float), sizeof *capture->textures,
                                         &capture->textures);
     for (uint32_t i = 0; result == PNB_OK && i < decoder->count; i++) {
         capture->textures[i] = texture_allocate(NULL);

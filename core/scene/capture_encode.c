@@ -36,6 +36,7 @@ static void encode_textures(struct encoder *encoder) {
         write_u32(writer, texture->width);
         write_u32(writer, texture->height);
         write_u32(writer, texture->has_alpha);
+        write_u32(writer, texture->flags);
         write_bytes(writer, texture->rgba, (size_t)texture->width * texture->height * 4 * sizeof *texture->rgba);
     }
 }

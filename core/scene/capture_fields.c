@@ -12,26 +12,21 @@ const char capture_tags[SECTION_COUNT][5] = {
 #define FIELD_LIST(name) const struct field_list name = {name##_table, sizeof name##_table / sizeof *name##_table}
 
 static const struct field instance_fields_table[] = {
-    FIELD(pnb_instance, flags),
-    FIELD(pnb_instance, first_slot),
-    FIELD(pnb_instance, slot_count),
-    FIELD(pnb_instance, matrix),
+    FIELD(pnb_instance, flags),  FIELD(pnb_instance, first_slot), FIELD(pnb_instance, slot_count),
+    FIELD(pnb_instance, matrix), FIELD(pnb_instance, unlit_by),   FIELD(pnb_instance, unshadowed_by),
 };
 FIELD_LIST(instance_fields);
 
 static const struct field material_fields_table[] = {
-    FIELD(pnb_material, base_color),
-    FIELD(pnb_material, transparency),
-    FIELD(pnb_material, flags),
-    FIELD(pnb_material, emission),
-    FIELD(pnb_material, absorption),
+    FIELD(pnb_material, base_color), FIELD(pnb_material, transparency), FIELD(pnb_material, flags),
+    FIELD(pnb_material, emission),   FIELD(pnb_material, absorption),   FIELD(pnb_material, uv_matrix),
 };
 FIELD_LIST(material_fields);
 
 static const struct field light_fields_table[] = {
     FIELD(pnb_light, flags),      FIELD(pnb_light, type),       FIELD(pnb_light, shape),  FIELD(pnb_light, matrix),
     FIELD(pnb_light, emission),   FIELD(pnb_light, size),       FIELD(pnb_light, radius), FIELD(pnb_light, angle),
-    FIELD(pnb_light, spot_angle), FIELD(pnb_light, spot_blend),
+    FIELD(pnb_light, spot_angle), FIELD(pnb_light, spot_blend), FIELD(pnb_light, spread),
 };
 FIELD_LIST(light_fields);
 

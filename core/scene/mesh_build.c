@@ -9,6 +9,7 @@
 #include "strided.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 /* How many welded vertices of one source vertex are compared before a new one is made. A fan can have any number of
@@ -159,10 +160,24 @@ static pnb_result build_ranges(struct build *build) {
 
 /* ---- Second pass: weld ---- */
 
+static void corner_read_color(const pnb_mesh_desc *from, uint32_t corner, uint32_t vertex, uint8_t color[4]) {
+    const bool by_corner = from->corner_colors.data != NULL;
+    float linear[3] = {1, 1, 1};
+    if (by_corner || from->vertex_colors.data) {
+        strided_read(by_corner ? &from->corner_colors : &from->vertex_colors, by_corner ? corner : vertex, linear,
+                     sizeof linear);
+    }
+    for (int i = 0; i < 3; i++) {
+        float value = linear[i] > 0 ? fminf(linear[i], 1) : 0; /* not a number: 0 */
+        color[i] = (uint8_t)lrintf(sqrtf(value) * 255);
+    }
+}
+
 static struct vertex corner_read(struct build *build, const struct triangle *triangle, int i) {
     const pnb_mesh_desc *from = build->from;
     struct vertex vertex = {0};
     memcpy(vertex.position, triangle->positions[i], sizeof vertex.position);
+    corner_read_color(from, triangle->corners[i], triangle->vertices[i], vertex.color);
     bool packed = false;
     if (from->corner_normals.data) {
         float normal[3];
@@ -197,14 +212,14 @@ static bool build_set_capacity(struct build *build, uint32_t capacity) {
     return true;
 }
 
-/* Finds or makes the welded vertex; false without memory. The bits of normal and uv are compared: they follow the
- * position, which is the source vertex's own. */
+/* Finds or makes the welded vertex; false without memory. The bits of normal, uv and colour are compared: they follow
+ * the position, which is the source vertex's own. */
 static bool build_weld(struct build *build, uint32_t source, const struct vertex *vertex, uint32_t *index) {
     struct pnb_mesh *mesh = build->mesh;
-    _Static_assert(sizeof(struct vertex) - offsetof(struct vertex, normal) == 12, "no padding to compare");
+    _Static_assert(sizeof(struct vertex) - offsetof(struct vertex, normal) == 16, "no padding to compare");
     uint32_t link = build->newest[source];
     for (int compared = 0; link > 0 && compared < MAX_COMPARED; compared++, link = build->older[link - 1]) {
-        if (memcmp(mesh->vertices[link - 1].normal, vertex->normal, 12) == 0) {
+        if (memcmp(mesh->vertices[link - 1].normal, vertex->normal, 16) == 0) {
             *index = link - 1;
             return true;
         }

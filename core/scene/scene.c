@@ -12,9 +12,8 @@
 
 /* ---- Materials and slots ---- */
 
-static const struct scene_material default_material = {.base_color = {0.8f, 0.8f, 0.8f},
-                                                       .alpha = 1,
-                                                       .clearness = {1, 1, 1}};
+static const struct scene_material default_material = {
+    .base_color = {0.8f, 0.8f, 0.8f}, .alpha = 1, .clearness = {1, 1, 1}, .uv_matrix = {1, 0, 0, 0, 1, 0}};
 
 /* False: a channel was not usable and became 0. */
 static bool color_resolve(const float from[3], float to[3]) {
@@ -47,6 +46,11 @@ static void material_resolve(const pnb_material *from, uint32_t index, struct me
     if (!good) {
         messages_add(messages, "material %" PRIu32 ": its colour or transparency is out of range and was clamped",
                      index);
+    }
+    if (!numbers_usable(from->uv_matrix, 6)) {
+        messages_add(messages, "material %" PRIu32 ": its uv_matrix is not finite and was left out", index);
+    } else if (memcmp(from->uv_matrix, (float[6]){0}, sizeof from->uv_matrix) != 0) {
+        memcpy(to->uv_matrix, from->uv_matrix, sizeof to->uv_matrix);
     }
     /* The handle is immutable for the host but counts its users. */
     if (from->base_color_texture) {
@@ -160,6 +164,8 @@ static pnb_result copy_instance(const pnb_instance *from, uint32_t slot_count, s
     scene->instance_count++;
     to->mesh = mesh_retain(mesh);
     to->flags = from->flags;
+    to->unlit_by = from->unlit_by;
+    to->unshadowed_by = from->unshadowed_by;
     scene->catches_shadows = scene->catches_shadows || (from->flags & PNB_INSTANCE_SHADOW_CATCHER);
     memcpy(to->matrix, from->matrix, sizeof to->matrix);
     matrix_make_affine(to->matrix);
@@ -203,6 +209,24 @@ static char *light_unique_name(const struct scene *scene, const char *name) {
     return unique;
 }
 
+/* Takes a light that is not used out of the links of the instances; those behind it move up. */
+static void links_drop_light(struct scene *scene, uint32_t index) {
+    const uint64_t below = ((uint64_t)1 << index) - 1;
+    for (uint32_t i = 0; i < scene->instance_count; i++) {
+        uint64_t *links[] = {&scene->instances[i].unlit_by, &scene->instances[i].unshadowed_by};
+        for (int j = 0; j < 2; j++) {
+            *links[j] = (*links[j] & below) | ((*links[j] >> 1) & ~below);
+        }
+    }
+}
+
+static void links_finish(struct scene *scene) {
+    const uint64_t used = scene->light_count < 64 ? ((uint64_t)1 << scene->light_count) - 1 : UINT64_MAX;
+    for (uint32_t i = 0; i < scene->instance_count; i++) {
+        scene->light_linked = scene->light_linked || (scene->instances[i].unlit_by & used);
+    }
+}
+
 static pnb_result copy_lights(const pnb_scene *from, struct messages *messages, struct scene *to) {
     to->lights = memory_array(from->light_count, sizeof *to->lights);
     if (!to->lights) {
@@ -212,6 +236,7 @@ static pnb_result copy_lights(const pnb_scene *from, struct messages *messages, 
         const char *name = from->lights[i].name ? from->lights[i].name : "light";
         struct scene_light *light = &to->lights[to->light_count];
         if (!light_resolve(&from->lights[i], name, messages, light)) {
+            links_drop_light(to, to->light_count);
             continue;
         }
         light->name = light_unique_name(to, name);
@@ -224,6 +249,7 @@ static pnb_result copy_lights(const pnb_scene *from, struct messages *messages, 
                          light->name);
         }
     }
+    links_finish(to);
     return PNB_OK;
 }
 

@@ -13,11 +13,12 @@ struct content_key {
     uint64_t words[2];
 };
 
-/* One welded vertex, as OpenGL reads it: 24 bytes. */
+/* One welded vertex, as OpenGL reads it: 28 bytes. */
 struct vertex {
     float position[3];
     int16_t normal[2]; /* octahedral, signed normalised; unit length after decoding */
     float uv[2];
+    uint8_t color[4]; /* square roots of linear values, 255 = 1; color[3] is 0 */
 };
 
 /* Consecutive triangles of one material slot. */
@@ -42,7 +43,7 @@ struct pnb_texture {
     atomic_uint references;
     char *name;
     struct content_key content;
-    uint32_t width, height;
+    uint32_t width, height, flags;
     bool has_alpha;             /* without it alpha is 1, and as an alpha texture its grey counts */
     float *rgba;                /* linear, 4 per texel, rows bottom-up; colour 0..65504 (half floats), alpha 0..1 */
 };
@@ -56,11 +57,13 @@ struct scene_instance {
     uint32_t flags;
     uint32_t first_slot, slot_count; /* into scene.slots, checked; at least one */
     float matrix[16];
+    uint64_t unlit_by, unshadowed_by; /* bits of scene.lights */
 };
 
 struct scene_material {
     float base_color[3], alpha, emission[3];
     float clearness[3];               /* 1 - absorption */
+    float uv_matrix[6];
     uint32_t flags;
     pnb_texture *base_color_texture, *alpha_texture, *emission_texture; /* retained, or NULL */
 };
@@ -90,6 +93,7 @@ struct scene_light {
     float matrix[16];
     float emission[3];
     float size[2], radius, angle, spot_angle, spot_blend;
+    float spread; /* AREA: below pi, or 0 */
 };
 
 struct scene_camera {
@@ -112,6 +116,7 @@ struct scene {
     bool catches_shadows;             /* some instance is a shadow catcher */
     bool translucent;                 /* some material lets light through to what it shadows */
     bool colored;                     /* and tints it */
+    bool light_linked;                /* some instance is not lit by every light */
 };
 
 /* Copies and checks. What cannot be used is dropped or clamped with a message that names it; only broken

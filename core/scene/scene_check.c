@@ -41,7 +41,8 @@ static pnb_result check_instance(const pnb_instance *instance, uint32_t index) {
 
 static pnb_result check_material(const pnb_material *material, uint32_t index) {
     const uint32_t known = PNB_MATERIAL_CULL_CAMERA | PNB_MATERIAL_CULL_SHADOW | PNB_MATERIAL_HOLDOUT |
-                           PNB_MATERIAL_TINTED | PNB_MATERIAL_NO_SHADOW | PNB_MATERIAL_OPAQUE_SHADOW;
+                           PNB_MATERIAL_TINTED | PNB_MATERIAL_NO_SHADOW | PNB_MATERIAL_OPAQUE_SHADOW |
+                           PNB_MATERIAL_VERTEX_COLOR;
     pnb_result result = check_size("material", index, material->struct_size, sizeof *material);
     if (result == PNB_OK && (material->flags & ~known)) {
         return error_set(PNB_ERROR_INVALID_ARGUMENT, "material %" PRIu32 ": unknown flags 0x%" PRIx32, index,

@@ -3,11 +3,15 @@
 #include "numbers.h"
 #include "scene_parts.h"
 
+#include <math.h>
 #include <string.h>
 
 static const float PI = 3.14159265f;
 #define DEFAULT_SPOT_ANGLE (PI / 4)
 #define MIN_SPOT_ANGLE     1e-3f
+/* A narrower cone has nothing to integrate, a wider one is none. */
+#define MIN_SPREAD 0.0174533f
+#define MAX_SPREAD 3.14f
 
 /* Brings a value into its range; a message tells what was changed. `what` names the member with its unit. */
 static float clamped(float value, float minimum, float maximum, const char *name, const char *what,
@@ -55,6 +59,7 @@ static void light_copy(const pnb_light *from, struct scene_light *to) {
     if (from->type == PNB_LIGHT_AREA) {
         to->shape = from->shape;
         memcpy(to->size, from->size, sizeof to->size);
+        to->spread = from->spread;
     }
     if (from->type == PNB_LIGHT_POINT || from->type == PNB_LIGHT_SPOT) {
         to->radius = fabsf(from->radius);
@@ -69,8 +74,8 @@ static void light_copy(const pnb_light *from, struct scene_light *to) {
 }
 
 static bool light_is_usable(const struct scene_light *light) {
-    const float others[] = {light->size[0], light->size[1],    light->radius,
-                            light->angle,   light->spot_angle, light->spot_blend};
+    const float others[] = {light->size[0],    light->size[1],    light->radius, light->angle,
+                            light->spot_angle, light->spot_blend, light->spread};
     bool usable = numbers_usable(light->matrix, 16) && numbers_usable(light->emission, 3) &&
                   numbers_within(light->matrix + 12, 3, LARGEST_COORDINATE) &&
                   numbers_within(others, sizeof others / sizeof *others, LARGEST_COORDINATE);
@@ -94,6 +99,8 @@ bool light_resolve(const pnb_light *from, const char *name, struct messages *mes
     light_resolve_axes(to, name, messages);
     if (to->type == PNB_LIGHT_AREA) {
         light_resolve_size(to);
+        to->spread = to->spread > 0 ? fmaxf(to->spread, MIN_SPREAD) : 0;
+        to->spread = to->spread < MAX_SPREAD ? to->spread : 0;
     }
     if (to->type == PNB_LIGHT_SPOT) {
         to->spot_angle = clamped(to->spot_angle, MIN_SPOT_ANGLE, PI, name, "cone angle", messages);

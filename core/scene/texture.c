@@ -68,6 +68,9 @@ static pnb_result texture_check(const pnb_texture_desc *desc) {
         return error_set(PNB_ERROR_INVALID_ARGUMENT, "texture '%s': %" PRIu32 " channels, but 1 to 4 are possible",
                          name, desc->channels);
     }
+    if (desc->flags & ~TEXTURE_FLAGS) {
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "texture '%s': unknown flags 0x%" PRIx32, name, desc->flags);
+    }
     if (!desc->pixels.data) {
         return error_set(PNB_ERROR_INVALID_ARGUMENT, "texture '%s': pixels is NULL", name);
     }
@@ -101,6 +104,7 @@ pnb_result pnb_texture_create(const pnb_texture_desc *desc, pnb_texture **textur
     }
     made->width = desc->width;
     made->height = desc->height;
+    made->flags = desc->flags;
     made->has_alpha = desc->channels % 2 == 0;
     made->rgba = memory_array((size_t)desc->width * desc->height, 4 * sizeof *made->rgba);
     if (!made->rgba) {
@@ -126,7 +130,7 @@ pnb_texture *texture_allocate(const char *name) {
 }
 
 void texture_finish(pnb_texture *texture) {
-    uint32_t header[3] = {texture->width, texture->height, texture->has_alpha};
+    uint32_t header[4] = {texture->width, texture->height, texture->has_alpha, texture->flags};
     texture->content = (struct content_key){{0}};
     content_key_add(&texture->content, header, sizeof header);
     content_key_add(&texture->content, texture->rgba,

@@ -8,6 +8,8 @@
 #define TEXTURE_MAX_SIDE 16384u
 /* The largest finite half float. */
 #define TEXTURE_MAX_COLOR 65504.0f
+/* All of enum pnb_texture_flags. */
+#define TEXTURE_FLAGS ((uint32_t)(PNB_TEXTURE_NEAREST | PNB_TEXTURE_EXTEND | PNB_TEXTURE_CLIP | PNB_TEXTURE_MIRROR))
 
 /* An empty texture with one reference; NULL without memory. */
 pnb_texture *texture_allocate(const char *name);

@@ -284,7 +284,7 @@ static void foreign_files_are_refused(void **state) {
     longer[4] = CAPTURE_VERSION + 1;
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
-    assert_error("format version 4");
+    assert_error("has format version 5");
     memcpy(longer, "BLENDER-v304RENDH", 17);
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
@@ -363,7 +363,7 @@ static void forged_meshes_are_found(void **state) {
 static void forged_textures_are_found(void **state) {
     struct fixture *fixture = *state;
     struct section section = find_section(&fixture->file, SECTION_TEXTURES);
-    size_t size = section.start + 4 + strlen("Colors"), texels = size + 12;
+    size_t size = section.start + 4 + strlen("Colors"), texels = size + 16;
     assert_number_found(fixture, size, 0, "its size is broken");
     assert_number_found(fixture, size, 16385, "its size is broken");
     assert_number_found(fixture, size + 4, 16384, "too early");
