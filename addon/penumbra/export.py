@@ -5,6 +5,8 @@ import ctypes
 from array import array
 from ctypes import addressof, byref, c_uint32, memmove
 
+import bpy
+
 from . import camera, capi, compat, lights, materials, nodes, textures
 from .mesh import create_mesh
 
@@ -15,12 +17,12 @@ _UNSUPPORTED = {'CURVES': "hair curves", 'POINTCLOUD': "a point cloud", 'VOLUME'
 class SceneExport:
     """A pnb_scene and all it points to; `close` it when the library has copied it."""
 
-    def __init__(self, depsgraph, use_pointers=True, kept_meshes=None, shown_in=None):
-        """`kept_meshes`: KeptMeshes that outlive this export; `shown_in`: only what this 3D view's local view shows."""
+    def __init__(self, depsgraph, use_pointers=True, kept=None, shown_in=None):
+        """`kept`: a Kept that outlives this export; `shown_in`: only what this 3D view's local view shows."""
         self.scene = capi.Scene(camera=capi.Camera())
         self.warnings = []
         self._use_pointers = use_pointers
-        self._kept_meshes = kept_meshes
+        self._kept = kept
         self._shown_in = shown_in
         self._meshes = {}           # address of the evaluated data: handle, or None if it has no mesh
         self._textures = {}         # (image name, use): (handle, whether it is ours)
@@ -46,7 +48,7 @@ class SceneExport:
 
     def close(self):
         library = capi.library()
-        if self._kept_meshes is None:
+        if self._kept is None:
             for handle in filter(None, self._meshes.values()):
                 library.destroy('mesh', handle)
         for handle, is_ours in self._textures.values():
@@ -124,8 +126,7 @@ class SceneExport:
             return None
         key = ob.data.as_pointer()
         if key not in self._meshes:
-            keep = self._kept_meshes
-            self._meshes[key] = keep.get(ob, self._create_mesh) if keep else self._create_mesh(ob)
+            self._meshes[key] = self._kept.mesh(ob, self._create_mesh) if self._kept else self._create_mesh(ob)
         return self._meshes[key]
 
     def _create_mesh(self, ob):
@@ -158,7 +159,8 @@ class SceneExport:
     def _texture(self, image, use):
         key = (image.as_pointer(), use)
         if key not in self._textures:
-            self._textures[key] = textures.cache.get(image, use, self.warnings)
+            cache = self._kept.textures if self._kept else textures.cache
+            self._textures[key] = cache.get(image, use, self.warnings)
         return self._textures[key][0]
 
     # ---- The rest ----
@@ -183,38 +185,42 @@ class SceneExport:
         self.scene.world_color[:] = color
 
 
-def changed_geometry(depsgraph):
-    """Addresses of the originals whose geometry changed. Undo and frame changes come without a list of updates: None,
-    which stands for anything."""
+def changed_data(depsgraph):
+    """Addresses of the originals whose geometry or pixels changed. Undo and frame changes come without a list of
+    updates: None, which stands for anything."""
     updates = list(depsgraph.updates)
     if not updates:
         return None
-    return {update.id.original.as_pointer() for update in updates if update.is_updated_geometry}
+    return {update.id.original.as_pointer() for update in updates
+            if update.is_updated_geometry or isinstance(update.id, bpy.types.Image)}
 
 
-class KeptMeshes:
-    """Meshes kept from one export of a viewport to the next while Blender says that they did not change."""
+class Kept:
+    """Meshes and textures kept from one export of a viewport to the next while Blender says that they did not change."""
 
     def __init__(self):
-        self._kept = {}         # address of the evaluated data: (what identifies its content, handle)
+        self.textures = textures.TextureCache()
+        self._meshes = {}       # address of the evaluated data: (what identifies its content, handle)
         self._used = set()
-        self._changed = None    # addresses of originals; None: anything
+        self._changed = None    # see changed_data
 
     def begin(self, changed):
-        """Before an export; `changed`: see changed_geometry."""
+        """Before an export, which must be the only one from then on."""
         self._used = set()
         self._changed = changed
+        if changed is None or any(image.as_pointer() in changed for image in bpy.data.images):
+            self.textures.clear()
 
-    def get(self, ob, create):
+    def mesh(self, ob, create):
         data = ob.data
         key = data.as_pointer()
         content = (ob.name_full, len(data.vertices), len(data.loops), len(data.polygons))
-        kept = self._kept.get(key)
+        kept = self._meshes.get(key)
         if kept is None or kept[0] != content or self._may_differ(ob):
             self._drop(key)
-            self._kept[key] = content, create(ob)
+            self._meshes[key] = content, create(ob)
         self._used.add(key)
-        return self._kept[key][1]
+        return self._meshes[key][1]
 
     def _may_differ(self, ob):
         if self._changed is None or ob.data.is_editmode:
@@ -223,15 +229,17 @@ class KeptMeshes:
         return original.as_pointer() in self._changed or original.data and original.data.as_pointer() in self._changed
 
     def end(self):
-        for key in self._kept.keys() - self._used:
+        """After the export: what it did not use is dropped."""
+        for key in self._meshes.keys() - self._used:
             self._drop(key)
 
     def close(self):
-        for key in list(self._kept):
+        for key in list(self._meshes):
             self._drop(key)
+        self.textures.clear()
 
     def _drop(self, key):
-        _content, handle = self._kept.pop(key, (None, None))
+        _content, handle = self._meshes.pop(key, (None, None))
         if handle:
             capi.library().destroy('mesh', handle)
 

@@ -55,7 +55,7 @@ class Viewport:
     def __init__(self, host):
         self._host = host
         self._exported = None
-        self._meshes = export.KeptMeshes()
+        self._kept = export.Kept()
         self._visibility = None     # what decides which objects this viewport shows
         self._version = 0           # of the exported scene
         self._wanted = None         # everything the picture depends on
@@ -69,10 +69,13 @@ class Viewport:
     def close(self):
         _viewports.discard(self)
         self._stop()
+        self._forget()
+        self._kept.close()
+
+    def _forget(self):
         if self._exported:
             self._exported.close()
         self._exported = None
-        self._meshes.close()
 
     # ---- Called by Blender ----
 
@@ -97,6 +100,8 @@ class Viewport:
 
     def _fail(self, error):
         self._stop()
+        if self._exported is None:
+            self._kept.close()      # of an export that did not get to its end
         if isinstance(error, (capi.Error, command_line.UsageError)):
             self._error = f"Penumbra cannot draw this viewport: {error}"
         else:
@@ -109,17 +114,16 @@ class Viewport:
         self._error = ''
         self._visibility = _visibility(context.space_data)
         shows = None if not any(self._visibility) else context.space_data
-        self._meshes.begin(self.changes(depsgraph))
-        exported = export.SceneExport(depsgraph, kept_meshes=self._meshes, shown_in=shows)
-        if self._exported:
-            self._exported.close()
-        self._exported = exported
-        self._meshes.end()
+        changed = self.changes(depsgraph)
+        self._forget()          # it may point to what is dropped now, whatever becomes of the new one
+        self._kept.begin(changed)
+        self._exported = export.SceneExport(depsgraph, kept=self._kept, shown_in=shows)
+        self._kept.end()
         self._version += 1
         self._schedule(context, depsgraph)
 
     def changes(self, depsgraph):
-        return export.changed_geometry(depsgraph)
+        return export.changed_data(depsgraph)
 
     def is_stale(self):
         """Whether the scene may have changed without an update."""

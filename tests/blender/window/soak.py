@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Random edits of a scene that a viewport shows, with undo and F12 in between: no crash, no exception, no growth, and in
+the end the picture of a new viewport. Takes minutes, so it is no part of the tests:
+
+    sh tests/blender/run.sh build --window soak
+    SOAK_EDITS=200 SOAK_SEED=7 sh tests/blender/run.sh build --window soak
+"""
+
+import os
+import random
+
+import bpy
+
+from harness import add_cube, add_light, white_material
+from window import ViewportTest
+
+from penumbra import viewport
+
+EDITS = int(os.environ.get('SOAK_EDITS', 2000))
+SEED = int(os.environ.get('SOAK_SEED', 1))
+# Edits after which memory must not grow: Blender's undo stack and all caches are full then.
+WARM = min(600, EDITS // 2)
+STILLS_EVERY = 100
+MOST_OBJECTS = 12
+
+
+def resident_megabytes():
+    with open('/proc/self/statm', encoding='ascii') as file:
+        return int(file.read().split()[1]) * os.sysconf('SC_PAGE_SIZE') / 2 ** 20
+
+
+class Soak(ViewportTest):
+    def setUp(self):
+        super().setUp()
+        self.scene.render.preview_pixel_size = '4'
+        self.still_life()
+        self.look()
+        self.random = random.Random(SEED)
+        self.failures = []
+        original = viewport.Viewport._fail
+
+        def fail(shown, error):
+            self.failures.append(repr(error))
+            original(shown, error)
+        viewport.Viewport._fail = fail
+        self.addCleanup(setattr, viewport.Viewport, '_fail', original)
+
+    def scene_now(self):
+        """Undo replaces the scene's data."""
+        return bpy.context.window_manager.windows[0].scene
+
+    def objects(self, kind):
+        return [ob for ob in self.scene_now().objects if ob.type == kind]
+
+    # ---- Edits ----
+
+    def add_object(self):
+        if len(self.scene_now().objects) > MOST_OBJECTS:
+            self.delete()
+        elif self.random.random() < 0.3:
+            add_light("Light", self.random.choice(['AREA', 'POINT', 'SPOT', 'SUN']), self.place(3.0), energy=20.0)
+        else:
+            add_cube(location=self.place(0.5)).data.materials.append(white_material())
+
+    def delete(self):
+        objects = self.objects('MESH') + self.objects('LIGHT')
+        if objects:
+            bpy.data.objects.remove(self.random.choice(objects))
+
+    def move(self):
+        for ob in self.objects('MESH')[:1] + self.objects('LIGHT')[:1]:
+            ob.location = self.place(ob.location.z)
+
+    def hide(self):
+        objects = self.objects('MESH') + self.objects('LIGHT')
+        if objects:
+            ob = self.random.choice(objects)
+            if self.random.random() < 0.5:
+                ob.hide_viewport = not ob.hide_viewport
+            else:
+                ob.hide_set(not ob.hide_get())
+
+    def resize(self):
+        for ob in self.objects('LIGHT'):
+            if ob.data.type == 'AREA':
+                ob.data.size = self.random.uniform(0.1, 3.0)
+        for ob in self.objects('MESH')[:1]:
+            ob.data.vertices[0].co.x = self.random.uniform(-1.0, 0.0)
+            ob.data.update()
+
+    def orbit(self):
+        self.region_3d().view_distance = self.random.uniform(5.0, 15.0)
+
+    def switch_mode(self):
+        meshes = [ob for ob in self.objects('MESH') if ob.visible_get()]
+        with self.in_viewport():
+            active = bpy.context.view_layer.objects.active
+            if active and active.mode == 'EDIT':
+                bpy.ops.object.mode_set(mode='OBJECT')
+            elif meshes:
+                bpy.context.view_layer.objects.active = self.random.choice(meshes)
+                bpy.ops.object.mode_set(mode='EDIT')
+
+    def switch_shading(self):
+        shading = self.space().shading
+        shading.type = 'SOLID' if shading.type == 'RENDERED' else 'RENDERED'
+
+    def switch_technique(self):
+        items = self.scene_now().penumbra.bl_rna.properties['technique'].enum_items
+        self.scene_now().penumbra.technique = self.random.choice([item.identifier for item in items
+                                                                  if item.identifier != 'REFERENCE'])
+
+    def undo(self):
+        with self.in_viewport():
+            if bpy.ops.ed.undo.poll():
+                bpy.ops.ed.undo()
+
+    def redo(self):
+        with self.in_viewport():
+            if bpy.ops.ed.redo.poll():
+                bpy.ops.ed.redo()
+
+    def next_frame(self):
+        scene = self.scene_now()
+        scene.frame_set(scene.frame_current + 1)
+
+    def place(self, z):
+        return self.random.uniform(-2.0, 2.0), self.random.uniform(-2.0, 2.0), z
+
+    def object_mode(self):
+        with self.in_viewport():
+            active = bpy.context.view_layer.objects.active
+            if active and active.mode == 'EDIT':
+                bpy.ops.object.mode_set(mode='OBJECT')
+
+    def edit(self):
+        action = self.random.choice([self.add_object, self.delete, self.move, self.move, self.hide, self.resize, self.orbit,
+                                     self.switch_mode, self.switch_shading, self.switch_technique, self.undo, self.undo,
+                                     self.redo, self.next_frame])
+        if action in (self.delete, self.add_object):
+            self.object_mode()
+        action()
+        if action not in (self.undo, self.redo, self.orbit):
+            with self.in_viewport():
+                bpy.ops.ed.undo_push(message=action.__name__)
+
+    # ---- The test ----
+
+    def test_soak(self):
+        warm = None
+        for number in range(EDITS):
+            self.edit()
+            # From several edits before a redraw to a picture at rest.
+            for _ in range(self.random.choice([0, 0, 1, 2, 5])):
+                yield 'draw'
+            if number % STILLS_EVERY == STILLS_EVERY - 1:
+                self.object_mode()
+                if not self.scene_now().camera:
+                    self.undo()
+                self.scene = self.scene_now()
+                self.scene.render.resolution_x, self.scene.render.resolution_y = 64, 48
+                self.still("soak")
+                yield from self.settle()
+                print(f"{number + 1} edits, {resident_megabytes():.0f} MiB", flush=True)
+            if number + 1 == WARM:
+                warm = resident_megabytes()
+        end = resident_megabytes()
+        self.assertEqual(self.failures, [])
+        self.space().shading.type = 'RENDERED'
+        last = yield from self.shown("soak-last")
+        yield from self.start_anew()
+        self.assertTrue(last == (yield from self.shown("soak-fresh")))
+        print(f"memory after {WARM} edits {warm:.0f} MiB, after {EDITS} {end:.0f} MiB")
+        self.assertLessEqual(end, 1.05 * warm)
