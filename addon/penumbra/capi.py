@@ -6,7 +6,7 @@ import os
 from ctypes import (POINTER, byref, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_uint32, c_uint64,
                     c_void_p, sizeof)
 
-API_VERSION = 3
+API_VERSION = 4
 
 OK, TIMEOUT = 0, 1
 INVALID_ARGUMENT, NO_BACKEND, UNSUPPORTED, OUT_OF_MEMORY, CANCELLED, CONTEXT_LOST = -1, -2, -3, -4, -5, -6
@@ -18,7 +18,8 @@ PERSPECTIVE, ORTHOGRAPHIC = range(2)
 INSTANCE_HIDDEN_FROM_CAMERA, INSTANCE_NO_SHADOW, INSTANCE_NO_RECEIVE, INSTANCE_HOLDOUT = 1, 2, 4, 8
 INSTANCE_SHADOW_CATCHER = 16
 MATERIAL_CULL_CAMERA, MATERIAL_CULL_SHADOW, MATERIAL_HOLDOUT = 1, 2, 4
-MATERIAL_TINTED, MATERIAL_NO_SHADOW, MATERIAL_OPAQUE_SHADOW = 8, 16, 32
+MATERIAL_TINTED, MATERIAL_NO_SHADOW, MATERIAL_OPAQUE_SHADOW, MATERIAL_VERTEX_COLOR = 8, 16, 32, 64
+TEXTURE_NEAREST, TEXTURE_EXTEND, TEXTURE_CLIP, TEXTURE_MIRROR = 1, 2, 4, 8
 LIGHT_NO_SHADOW, LIGHT_COSINE_SPOT = 1, 2
 PASS_COMBINED, PASS_DEPTH, PASS_NORMAL, PASS_SHADOW, PASS_LIGHT_SHADOWS = 1, 2, 4, 8, 16
 SETTINGS_FILM_TRANSPARENT, SETTINGS_PROGRESSIVE = 1, 2
@@ -59,29 +60,43 @@ class MeshDesc(_Struct):
     _fields_ = [("struct_size", c_uint32), ("vertex_count", c_uint32), ("corner_count", c_uint32),
                 ("triangle_count", c_uint32), ("polygon_count", c_uint32), ("reserved", c_uint32), ("name", c_char_p),
                 ("positions", Array), ("corner_vertices", Array), ("corner_normals", Array), ("corner_uvs", Array),
-                ("triangles", Array), ("triangle_polygons", Array), ("polygon_materials", Array)]
+                ("triangles", Array), ("triangle_polygons", Array), ("polygon_materials", Array),
+                ("corner_colors", Array), ("vertex_colors", Array)]
+
+
+class StrandsDesc(_Struct):
+    _fields_ = [("struct_size", c_uint32), ("point_count", c_uint32), ("strand_count", c_uint32),
+                ("reserved", c_uint32), ("name", c_char_p), ("positions", Array), ("radii", Array),
+                ("first_points", Array), ("uvs", Array)]
+
+
+class PointsDesc(_Struct):
+    _fields_ = [("struct_size", c_uint32), ("point_count", c_uint32), ("name", c_char_p), ("positions", Array),
+                ("radii", Array)]
 
 
 class TextureDesc(_Struct):
     _fields_ = [("struct_size", c_uint32), ("width", c_uint32), ("height", c_uint32), ("channels", c_uint32),
-                ("is_srgb", c_uint32), ("reserved", c_uint32), ("name", c_char_p), ("pixels", Array)]
+                ("is_srgb", c_uint32), ("flags", c_uint32), ("name", c_char_p), ("pixels", Array)]
 
 
 class Material(_Struct):
     _fields_ = [("struct_size", c_uint32), ("base_color", c_float * 3), ("transparency", c_float),
                 ("flags", c_uint32), ("base_color_texture", c_void_p), ("alpha_texture", c_void_p),
-                ("emission", c_float * 3), ("absorption", c_float * 3), ("emission_texture", c_void_p)]
+                ("emission", c_float * 3), ("absorption", c_float * 3), ("emission_texture", c_void_p),
+                ("uv_matrix", c_float * 6)]
 
 
 class Instance(_Struct):
     _fields_ = [("struct_size", c_uint32), ("flags", c_uint32), ("mesh", c_void_p), ("name", c_char_p),
-                ("first_slot", c_uint32), ("slot_count", c_uint32), ("matrix", c_float * 16)]
+                ("first_slot", c_uint32), ("slot_count", c_uint32), ("matrix", c_float * 16), ("unlit_by", c_uint64),
+                ("unshadowed_by", c_uint64)]
 
 
 class Light(_Struct):
     _fields_ = [("struct_size", c_uint32), ("flags", c_uint32), ("type", c_int), ("shape", c_int), ("name", c_char_p),
                 ("matrix", c_float * 16), ("emission", c_float * 3), ("size", c_float * 2), ("radius", c_float),
-                ("angle", c_float), ("spot_angle", c_float), ("spot_blend", c_float)]
+                ("angle", c_float), ("spot_angle", c_float), ("spot_blend", c_float), ("spread", c_float)]
 
 
 class Camera(_Struct):
@@ -145,6 +160,8 @@ _FUNCTIONS = {
     "pnb_context_destroy": (None, [_HANDLE_OUT]),
     "pnb_context_get_info": (CHECKED, [_HANDLE, POINTER(ContextInfo)]),
     "pnb_mesh_create": (CHECKED, [POINTER(MeshDesc), _HANDLE_OUT]),
+    "pnb_mesh_create_strands": (CHECKED, [POINTER(StrandsDesc), _HANDLE_OUT]),
+    "pnb_mesh_create_points": (CHECKED, [POINTER(PointsDesc), _HANDLE_OUT]),
     "pnb_mesh_destroy": (None, [_HANDLE_OUT]),
     "pnb_mesh_warning": (c_char_p, [_HANDLE]),
     "pnb_texture_create": (CHECKED, [POINTER(TextureDesc), _HANDLE_OUT]),
@@ -224,6 +241,12 @@ class Library:
         """Handle of pnb_<kind>_create."""
         handle = c_void_p()
         getattr(self, kind + "_create")(byref(desc), byref(handle))
+        return handle
+
+    def create_mesh_of(self, kind, desc):
+        """Handle of pnb_mesh_create_<kind>: "strands" or "points"."""
+        handle = c_void_p()
+        getattr(self, "mesh_create_" + kind)(byref(desc), byref(handle))
         return handle
 
     def destroy(self, kind, handle):

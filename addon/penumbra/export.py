@@ -1,17 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Dependency graph -> pnb_scene. Nothing of Blender is kept after the call that made the export."""
 
-import ctypes
 from array import array
-from ctypes import addressof, byref, c_uint32, memmove
-
-import bpy
+from ctypes import byref, c_uint32
+from typing import NamedTuple
 
 from . import camera, capi, compat, lights, materials, nodes, textures
-from .mesh import create_mesh
+from .geometry import MeshStore
+from .links import LightLinks
+from .mesh import NO_NEEDS
 
-# Object types that can be seen in other engines but are not exported.
-_UNSUPPORTED = {'CURVES': "hair curves", 'POINTCLOUD': "a point cloud", 'VOLUME': "a volume"}
+
+class ExportedMaterial(NamedTuple):
+    index: int
+    needs: object       # mesh.Needs
+
+
+class Template:
+    """All bytes of a capi.Instance but its matrix."""
+
+    def __init__(self, instance, is_hair):
+        content = bytes(instance)
+        field = capi.Instance.matrix
+        self.head, self.tail = content[:field.offset], content[field.offset + field.size:]
+        self.is_hair = is_hair
+        self._instance = instance   # keeps the name
 
 
 class SceneExport:
@@ -21,12 +34,13 @@ class SceneExport:
         """`kept`: a Kept that outlives this export; `shown_in`: only what this 3D view's local view shows."""
         self.scene = capi.Scene(camera=capi.Camera())
         self.warnings = []
-        self._use_pointers = use_pointers
         self._kept = kept
+        self._meshes = MeshStore(depsgraph.mode == 'RENDER', use_pointers, kept, self.warnings)
         self._shown_in = shown_in
-        self._meshes = {}           # address of the evaluated data: handle, or None if it has no mesh
-        self._textures = {}         # (image name, use): (handle, whether it is ours)
-        self._materials = {}        # address: index; None: no material
+        self._templates = {}        # addresses of object, data and instancing object: what is drawn of it
+        self._links = LightLinks()
+        self._textures = {}         # (address of the image, use, flags): (handle, whether it is ours)
+        self._materials = {}        # address: ExportedMaterial; None: no material
         self._slots = {}            # tuple of material indices: first slot
         self._material_list, self._slot_list, self._lights = [], [], []
         self._view_layer = depsgraph.view_layer
@@ -47,14 +61,11 @@ class SceneExport:
         self.close()
 
     def close(self):
-        library = capi.library()
-        if self._kept is None:
-            for handle in filter(None, self._meshes.values()):
-                library.destroy('mesh', handle)
+        self._meshes.close()
         for handle, is_ours in self._textures.values():
             if is_ours and handle:
-                library.destroy('texture', handle)
-        self._meshes, self._textures = {}, {}
+                capi.library().destroy('texture', handle)
+        self._textures = {}
 
     def set_camera(self, ob, matrix, shift_x, width, height, aspect):
         camera.fill_camera(self.scene.camera, ob, matrix, shift_x, width, height, aspect, self.warnings)
@@ -62,43 +73,59 @@ class SceneExport:
     # ---- Instances ----
 
     def _add_instances(self, depsgraph):
-        """Matrices and flags of all instances come in one call each; only objects need a loop."""
-        count = len(depsgraph.object_instances)
+        """Matrices and flags of all instances come in one call each; what an object's instances share is made once."""
+        instances = depsgraph.object_instances
+        count = len(instances)
         matrices = array('f', bytes(64 * count))
-        shown = array('b', bytes(count))
-        depsgraph.object_instances.foreach_get('matrix_world', matrices)
-        depsgraph.object_instances.foreach_get('show_self', shown)
-        self._instances = (capi.Instance * count)()
-        used = 0
-        for number, instance in enumerate(depsgraph.object_instances):
-            if not shown[number] or not self._is_shown(instance):
+        shown, particles = array('b', bytes(count)), array('b', bytes(count))
+        instances.foreach_get('matrix_world', matrices)
+        instances.foreach_get('show_self', shown)
+        instances.foreach_get('show_particles', particles)
+        places = memoryview(matrices).cast('B')
+        pieces, numbers = [], []
+        for number, instance in enumerate(instances):
+            if not (shown[number] or particles[number]) or not self._is_shown(instance):
                 continue
-            ob = instance.object
-            if ob.type == 'LIGHT':
-                self._add_light(ob, instance.matrix_world)
-                continue
-            mesh = self._mesh_of(ob)
-            if mesh is None:
-                continue
-            target = self._instances[used]
-            self._fill_instance(target, ob, mesh)
-            memmove(addressof(target) + capi.Instance.matrix.offset, matrices.buffer_info()[0] + 64 * number, 64)
-            used += 1
-        self.scene.instance_count = used
+            for template in self._templates_of(instance):
+                if particles[number] if template.is_hair else shown[number]:
+                    pieces += template.head, places[64 * number:64 * number + 64], template.tail
+                    numbers.append(number)
+        self._instances = (capi.Instance * len(numbers)).from_buffer(bytearray(b''.join(pieces)))
+        self.scene.instance_count = len(numbers)
+        if self._links:
+            self._link_lights(instances, numbers)
 
     def _is_shown(self, instance):
         if self._shown_in is None:
             return True
         return (instance.parent or instance.object).original.visible_in_viewport_get(self._shown_in)
 
-    def _fill_instance(self, target, ob, mesh):
-        target.struct_size = ctypes.sizeof(capi.Instance)
-        target.mesh = mesh
-        target.name = ob.name.encode()
-        target.flags = self._flags(ob)
-        slots = tuple(self._material_index(slot.material) for slot in ob.material_slots)
-        target.first_slot = self._first_slot(slots)
-        target.slot_count = len(slots)
+    def _templates_of(self, instance):
+        """What is drawn of an object. Instances of geometry come as one object with changing data."""
+        ob, parent = instance.object, instance.parent
+        if ob.type == 'LIGHT':
+            self._add_light(ob, parent, instance.matrix_world)
+            return ()
+        data = ob.data
+        if data is None:
+            return ()
+        key = ob.as_pointer(), data.as_pointer(), parent.as_pointer() if parent else 0
+        if key not in self._templates:
+            self._templates[key] = list(self._make_templates(ob))
+        return self._templates[key]
+
+    def _make_templates(self, ob):
+        slots = [self._material(slot.material) for slot in ob.material_slots]
+        mesh = self._meshes.of(ob, tuple(material.needs for material in slots))
+        indices = tuple(material.index for material in slots)
+        if mesh:
+            yield Template(self._instance(ob, ob.name, mesh, indices), False)
+        for name, mesh, slot in self._meshes.hair(ob):
+            yield Template(self._instance(ob, name, mesh, indices[min(slot, len(indices) - 1):][:1]), True)
+
+    def _instance(self, ob, name, mesh, slots):
+        return capi.Instance(mesh=mesh, name=name.encode(), flags=self._flags(ob), first_slot=self._first_slot(slots),
+                             slot_count=len(slots))
 
     def _flags(self, ob):
         """Of the object, and of its collections in this view layer."""
@@ -107,35 +134,28 @@ class SceneExport:
         is_holdout = ob.is_holdout or original.holdout_get(view_layer=self._view_layer)
         return ((0 if is_seen else capi.INSTANCE_HIDDEN_FROM_CAMERA)
                 | (0 if ob.visible_shadow else capi.INSTANCE_NO_SHADOW)
+                | (0 if original.penumbra.receive_shadows else capi.INSTANCE_NO_RECEIVE)
                 | (capi.INSTANCE_HOLDOUT if is_holdout else 0)
                 | (capi.INSTANCE_SHADOW_CATCHER if ob.is_shadow_catcher else 0))
 
-    def _add_light(self, ob, matrix):
+    # ---- Lights ----
+
+    def _add_light(self, ob, parent, matrix):
         if not ob.visible_diffuse:
             return
         light = capi.Light()
         lights.fill_light(light, ob, matrix, self.warnings)
+        self._links.add_light(len(self._lights), parent or ob)
         self._lights.append(light)
 
-    def _mesh_of(self, ob):
-        """Handle of the object's mesh, shared by all instances of the same evaluated data; None without one.
-        Curves, surfaces, texts and metaballs come as instances of their evaluated mesh beside themselves."""
-        if ob.type != 'MESH':
-            if ob.type in _UNSUPPORTED:
-                self.warnings.append(f"object '{ob.name}': {_UNSUPPORTED[ob.type]} cannot be rendered")
-            return None
-        key = ob.data.as_pointer()
-        if key not in self._meshes:
-            self._meshes[key] = self._kept.mesh(ob, self._create_mesh) if self._kept else self._create_mesh(ob)
-        return self._meshes[key]
-
-    def _create_mesh(self, ob):
-        if not ob.data.is_editmode:
-            return create_mesh(ob.data, ob.name, self._use_pointers, self.warnings)
-        try:
-            return create_mesh(ob.to_mesh(), ob.name, self._use_pointers, self.warnings)
-        finally:
-            ob.to_mesh_clear()
+    def _link_lights(self, instances, numbers):
+        """When all lights are known. `numbers`: of the dependency graph's instances, for each of ours."""
+        targets = {}
+        for target, number in zip(self._instances, numbers):
+            targets.setdefault(number, []).append(target)
+        for number, instance in enumerate(instances):
+            for target in targets.get(number, ()):
+                target.unlit_by, target.unshadowed_by = self._links.of(instance.parent or instance.object)
 
     # ---- Materials ----
 
@@ -145,22 +165,21 @@ class SceneExport:
             self._slot_list.extend(slots)
         return self._slots[slots]
 
-    def _material_index(self, material):
+    def _material(self, material):
         material = self._override or material
         key = material.as_pointer() if material else None
         if key not in self._materials:
             target = capi.Material(base_color=tuple(materials.GREY))
-            if material:
-                materials.fill_material(target, material, self._texture, self.warnings)
-            self._materials[key] = len(self._material_list)
+            needs = materials.fill_material(target, material, self._texture, self.warnings) if material else NO_NEEDS
+            self._materials[key] = ExportedMaterial(len(self._material_list), needs)
             self._material_list.append(target)
         return self._materials[key]
 
-    def _texture(self, image, use):
-        key = (image.as_pointer(), use)
+    def _texture(self, image, use, flags):
+        key = (image.as_pointer(), use, flags)
         if key not in self._textures:
             cache = self._kept.textures if self._kept else textures.cache
-            self._textures[key] = cache.get(image, use, self.warnings)
+            self._textures[key] = cache.get(image, use, flags, self.warnings)
         return self._textures[key][0]
 
     # ---- The rest ----
@@ -183,65 +202,6 @@ class SceneExport:
         else:
             color = world.color
         self.scene.world_color[:] = color
-
-
-def changed_data(depsgraph):
-    """Addresses of the originals whose geometry or pixels changed. Undo and frame changes come without a list of
-    updates: None, which stands for anything."""
-    updates = list(depsgraph.updates)
-    if not updates:
-        return None
-    return {update.id.original.as_pointer() for update in updates
-            if update.is_updated_geometry or isinstance(update.id, bpy.types.Image)}
-
-
-class Kept:
-    """Meshes and textures kept from one export of a viewport to the next while Blender says that they did not change."""
-
-    def __init__(self):
-        self.textures = textures.TextureCache()
-        self._meshes = {}       # address of the evaluated data: (what identifies its content, handle)
-        self._used = set()
-        self._changed = None    # see changed_data
-
-    def begin(self, changed):
-        """Before an export, which must be the only one from then on."""
-        self._used = set()
-        self._changed = changed
-        if changed is None or any(image.as_pointer() in changed for image in bpy.data.images):
-            self.textures.clear()
-
-    def mesh(self, ob, create):
-        data = ob.data
-        key = data.as_pointer()
-        content = (ob.name_full, len(data.vertices), len(data.loops), len(data.polygons))
-        kept = self._meshes.get(key)
-        if kept is None or kept[0] != content or self._may_differ(ob):
-            self._drop(key)
-            self._meshes[key] = content, create(ob)
-        self._used.add(key)
-        return self._meshes[key][1]
-
-    def _may_differ(self, ob):
-        if self._changed is None or ob.data.is_editmode:
-            return True
-        original = ob.original
-        return original.as_pointer() in self._changed or original.data and original.data.as_pointer() in self._changed
-
-    def end(self):
-        """After the export: what it did not use is dropped."""
-        for key in self._meshes.keys() - self._used:
-            self._drop(key)
-
-    def close(self):
-        for key in list(self._meshes):
-            self._drop(key)
-        self.textures.clear()
-
-    def _drop(self, key):
-        _content, handle = self._meshes.pop(key, (None, None))
-        if handle:
-            capi.library().destroy('mesh', handle)
 
 
 def write_capture(path, scene, settings):

@@ -61,8 +61,7 @@ def _area(target, light, matrix, name, warnings):
     target.shape = capi.ELLIPSE if light.shape in {'DISK', 'ELLIPSE'} else capi.RECTANGLE
     height = light.size_y if light.shape in {'RECTANGLE', 'ELLIPSE'} else light.size
     target.size[:] = light.size, height
-    if light.spread < pi * 0.999:
-        warnings.append(f"light '{name}': beam spread is not supported, the light shines into all directions")
+    target.spread = light.spread
     area = light.size * height * matrix.col[0].length * matrix.col[1].length
     if target.shape == capi.ELLIPSE:
         area *= pi / 4.0

@@ -3,9 +3,22 @@
 
 from dataclasses import dataclass, field
 
-from . import capi, compat, nodes, textures
+from . import capi, compat, nodes, textures, uvs
+from .mesh import Needs
 
 GREY = [0.8, 0.8, 0.8]
+# Instead of an image that is missing, as Cycles draws it.
+MISSING = [1.0, 0.0, 1.0]
+
+
+@dataclass
+class Picture:
+    """An image as a node uses it."""
+    image: object
+    use: str            # textures.ALPHA or GREY, where it is an alpha
+    flags: int          # capi.TEXTURE_*
+    uv_map: str
+    matrix: tuple       # of the texture coordinates
 
 
 @dataclass
@@ -16,34 +29,52 @@ class Surface:
     emission_image: object = None
     alpha: float = 1.0
     alpha_image: object = None
-    alpha_use: str = textures.ALPHA
     clear: list = field(default_factory=lambda: [1.0] * 3)  # colour of what shines through
     is_tinted: bool = False                                 # and by color_image, too
     is_holdout: bool = False
+    color_attribute: str = None     # '': the one for renders, None: none
 
-    def has_images(self):
-        return bool(self.color_image or self.emission_image or self.alpha_image)
+    def images(self):
+        return [image for image in (self.color_image, self.emission_image, self.alpha_image) if image]
 
 
 def fill_material(target, material, texture, warnings):
-    """`texture(image, use)` returns a handle or None."""
+    """`texture(image, use, flags)` returns a handle or None. Returns what the material needs of a mesh."""
     surface = read_surface(material, warnings)
     target.base_color[:] = surface.color
     target.transparency = 1.0 - surface.alpha
-    if surface.color_image:
-        target.base_color_texture = texture(surface.color_image, textures.COLOR)
-    if surface.alpha_image:
-        target.alpha_texture = texture(surface.alpha_image, surface.alpha_use)
     target.absorption[:] = [1.0 - min(max(channel, 0.0), 1.0) for channel in surface.clear]
     target.emission[:] = surface.emission
+    if surface.color_image:
+        target.base_color_texture = texture(surface.color_image.image, textures.COLOR, surface.color_image.flags)
+        if not target.base_color_texture:
+            target.base_color[:] = [a * b for a, b in zip(surface.color, MISSING)]
+    if surface.alpha_image:
+        target.alpha_texture = texture(surface.alpha_image.image, surface.alpha_image.use, surface.alpha_image.flags)
     if surface.emission_image:
-        target.emission_texture = texture(surface.emission_image, textures.COLOR)
+        target.emission_texture = texture(surface.emission_image.image, textures.COLOR, surface.emission_image.flags)
+        if not target.emission_texture:
+            target.emission[:] = [a * b for a, b in zip(surface.emission, MISSING)]
+    placed = _placement(surface, material.name, warnings)
+    if placed and placed.matrix != uvs.IDENTITY:
+        target.uv_matrix[:] = placed.matrix
     camera, shadow = compat.culls_backfaces(material)
     flags = {capi.MATERIAL_CULL_CAMERA: camera, capi.MATERIAL_CULL_SHADOW: shadow,
              capi.MATERIAL_HOLDOUT: surface.is_holdout, capi.MATERIAL_TINTED: surface.is_tinted,
              capi.MATERIAL_NO_SHADOW: compat.casts_no_shadow(material),
-             capi.MATERIAL_OPAQUE_SHADOW: compat.casts_opaque_shadow(material)}
+             capi.MATERIAL_OPAQUE_SHADOW: compat.casts_opaque_shadow(material),
+             capi.MATERIAL_VERTEX_COLOR: surface.color_attribute is not None}
     target.flags = sum(flag for flag, is_set in flags.items() if is_set)
+    return Needs(placed.uv_map if placed else '', surface.color_attribute)
+
+
+def _placement(surface, name, warnings):
+    """The picture whose texture coordinates count, or None."""
+    pictures = surface.images()
+    if any((picture.uv_map, picture.matrix) != (pictures[0].uv_map, pictures[0].matrix) for picture in pictures):
+        warnings.append(f"material '{name}': its images are placed differently, all are placed as "
+                        f"'{pictures[0].image.name}'")
+    return pictures[0] if pictures else None
 
 
 def read_surface(material, warnings):
@@ -94,7 +125,11 @@ class _Reader:
             return surface
         if node.type not in {'BSDF_PRINCIPLED', 'BSDF_DIFFUSE'}:
             self.warn(f"a {node.name} node is drawn as a diffuse surface of its colour")
-        surface.color, surface.color_image = self.color(source.input(color), GREY)
+        surface.color_attribute = self.color_attribute(source.input(color))
+        if surface.color_attribute is not None:
+            surface.color = [1.0] * 3
+        else:
+            surface.color, surface.color_image = self.color(source.input(color), GREY)
         if node.type == 'BSDF_PRINCIPLED':
             self.emission(source, compat.PRINCIPLED_EMISSION, 'Emission Strength', surface)
         if 'Alpha' in node.inputs:
@@ -132,7 +167,7 @@ class _Reader:
     def add(self, source):
         """The sum of two shaders, of which transparency cannot be a part."""
         first, second = self.shaders(source.output.node.inputs, source.groups)
-        if first.alpha < 1.0 or second.alpha < 1.0 or first.has_images() or second.has_images():
+        if first.alpha < 1.0 or second.alpha < 1.0 or first.images() or second.images():
             self.warn("Add Shader is supported for opaque shaders without images, of others the second is drawn")
             return second if second.alpha > 0.0 else first
         return Surface(color=[a + b for a, b in zip(first.color, second.color)],
@@ -145,7 +180,7 @@ class _Reader:
         weight = nodes.constant(factor, 0.5)
         transparent = first.alpha == 0.0
         if weight is None and transparent and not second.alpha_image:
-            second.alpha_image, second.alpha_use = self.image(factor)
+            second.alpha_image = self.image(factor)
             second.clear = first.clear
             if first.is_tinted:
                 self.warn("an image that tints what shines through counts only without an image of alpha")
@@ -164,7 +199,7 @@ class _Reader:
         share = second.alpha * weight / alpha if alpha > 0.0 else 0.5
         heavier = second if share > 0.5 else first
         if 0.0 < share < 1.0:
-            if first.has_images() or second.has_images():
+            if first.images() or second.images():
                 self.warn("of two mixed shaders with images only the heavier one is drawn")
             else:
                 heavier.color = [a + (b - a) * share for a, b in zip(first.color, second.color)]
@@ -175,33 +210,43 @@ class _Reader:
         heavier.alpha = alpha
         return heavier
 
+    def color_attribute(self, source):
+        """Name of the colour attribute that feeds the input, or None."""
+        if source.output is None:
+            return None
+        node = source.output.node
+        if node.type == 'VERTEX_COLOR':
+            return node.layer_name
+        if node.type == 'ATTRIBUTE' and node.attribute_type == 'GEOMETRY' and source.output.name == 'Color':
+            return node.attribute_name
+        return None
+
     def color(self, source, default):
         """(linear colour, image that multiplies it or None)."""
         value = nodes.constant(source, default)
         if value is None:
-            image, _use = self.image(source)
+            image = self.image(source)
             return ([1.0] * 3, image) if image else (self.fallback(source, default), None)
         return (value[:3] if isinstance(value, list) else [value] * 3), None
 
     def alpha(self, source, surface):
         value = nodes.constant(source, 1.0)
         if value is None:
-            surface.alpha_image, surface.alpha_use = self.image(source)
+            surface.alpha_image = self.image(source)
             value = 1.0 if surface.alpha_image else self.fallback(source, 1.0)
         elif isinstance(value, list):
             value = sum(value[:3]) / 3.0
         surface.alpha = min(max(value, 0.0), 1.0)
 
     def image(self, source):
-        """(image, use) of an Image Texture that feeds the input directly, else (None, use)."""
+        """The Picture of an Image Texture that feeds the input directly, or None."""
         output = source.output
         if output.node.type != 'TEX_IMAGE' or not output.node.image:
             self.warn(f"node {output.node.name} is not supported in '{source.socket.name}', or has no image")
-            return None, textures.ALPHA
-        vector = nodes.follow(output.node.inputs['Vector'], source.groups).output
-        if vector and not (vector.node.type == 'UVMAP' or vector.name == 'UV'):
-            self.warn(f"image '{output.node.image.name}' is placed by the active UV map, without {vector.node.name}")
-        return output.node.image, textures.ALPHA if output.name == 'Alpha' else textures.GREY
+            return None
+        uv_map, matrix = uvs.placement(source, self.warn)
+        use = textures.ALPHA if output.name == 'Alpha' else textures.GREY
+        return Picture(output.node.image, use, textures.node_flags(output.node), uv_map, matrix)
 
     def fallback(self, source, default):
         """The value a socket has beside its unsupported link."""

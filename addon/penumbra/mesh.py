@@ -3,6 +3,7 @@
 
 from array import array
 from ctypes import c_float, c_int32, c_uint32, c_void_p
+from typing import NamedTuple
 
 from . import capi, compat
 
@@ -12,15 +13,31 @@ _CTYPES = {'f': c_float, 'I': c_uint32, 'i': c_int32}
 _verified = {}
 
 
-def create_mesh(mesh, name, use_pointers, warnings):
-    """Handle of the library's copy, or None for a mesh without triangles."""
+class Needs(NamedTuple):
+    """What a material reads of the mesh it lies on."""
+    uv_map: str = ''        # '': the one for renders
+    color: str = None       # colour attribute; '': the one for renders, None: none
+
+
+NO_NEEDS = Needs()
+
+
+def create_mesh(mesh, name, needs, use_pointers, warnings):
+    """Handle of the library's copy, or None for a mesh without triangles. `needs`: of the material of each slot."""
     if not len(mesh.vertices) or not len(mesh.polygons):
         return None
     compat.prepare_mesh(mesh)
     try:
         desc = capi.MeshDesc(name=name.encode(), vertex_count=len(mesh.vertices), corner_count=len(mesh.loops),
                              triangle_count=len(mesh.loop_triangles), polygon_count=len(mesh.polygons))
-        copies = [_fill(getattr(desc, source.member), source, use_pointers) for source in compat.mesh_arrays(mesh)]
+        maps = dict.fromkeys(need.uv_map for need in needs)
+        color = next((need.color for need in needs if need.color is not None), None)
+        if any(need.color not in (None, color) for need in needs):
+            warnings.append(f"object '{name}': of its materials' colour attributes only the first is drawn")
+        copies = [_fill(getattr(desc, source.member), source, use_pointers)
+                  for source in compat.mesh_arrays(mesh, next(iter(maps), ''), color)]
+        if len(maps) > 1:
+            copies.append(_fill_mixed_uvs(desc.corner_uvs, mesh, [need.uv_map for need in needs]))
         handle = capi.library().create('mesh', desc)
         del copies
     finally:
@@ -29,6 +46,20 @@ def create_mesh(mesh, name, use_pointers, warnings):
     if warning:
         warnings.append(warning)
     return handle
+
+
+def _fill_mixed_uvs(target, mesh, maps):
+    """Texture coordinates of each face from the map that its material names."""
+    layers = {name: copy_of(source) for name in maps for source in compat.mesh_arrays(mesh, name)
+              if source.member == 'corner_uvs'}
+    mixed = array('f', bytes(8 * len(mesh.loops)))
+    for polygon in mesh.polygons:
+        name = maps[min(polygon.material_index, len(maps) - 1)]
+        start, end = 2 * polygon.loop_start, 2 * (polygon.loop_start + polygon.loop_total)
+        if name in layers:
+            mixed[start:end] = layers[name][start:end]
+    target.data, target.stride = c_void_p(mixed.buffer_info()[0]), 8
+    return mixed
 
 
 def _fill(target, source, use_pointers):

@@ -3,6 +3,8 @@
 
 from typing import NamedTuple
 
+from . import environment
+
 
 class Source(NamedTuple):
     """What feeds an input: `output` of another node, or nothing (None) and the value of `socket` counts."""
@@ -62,15 +64,23 @@ def constant(source, default):
     return value if isinstance(value, (int, float)) else list(value)
 
 
+def _mean_color(source, warnings):
+    """A constant colour, or the mean of an environment image; None if it is neither."""
+    if source.output and source.output.node.type == 'TEX_ENVIRONMENT' and source.output.node.image:
+        return environment.mean(source.output.node.image, warnings)
+    return constant(source, [1.0] * 3)
+
+
 def emission(tree, owner, warnings):
-    """Linear RGB colour times strength of a world or light that is a constant Background or Emission."""
+    """Linear RGB colour times strength of a world or light that is a Background or Emission of one colour, or of an
+    environment image, whose mean counts."""
     source = surface(tree)
     if source.output is None:
         return [0.0] * 3
     if source.output.node.type not in {'BACKGROUND', 'EMISSION'}:
         warnings.append(f"{owner}: a {source.output.node.name} node is not supported, it counts as white 1")
         return [1.0] * 3
-    color = constant(source.input('Color'), [1.0] * 3)
+    color = _mean_color(source.input('Color'), warnings)
     strength = constant(source.input('Strength'), 1.0)
     if color is None or strength is None:
         warnings.append(f"{owner}: nodes linked to Color or Strength are not supported, the socket's own value counts")

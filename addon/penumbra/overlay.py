@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, draw, export, viewport
+from . import capi, draw, geometry, viewport
 
 _regions = {}           # address of a region: its ShadowViewport
 _handler = None
@@ -44,7 +44,7 @@ class ShadowViewport(viewport.Viewport):
     def __init__(self, host):
         super().__init__(host)
         self._stale = True
-        self._changed = None    # see export.changed_data
+        self._changed = None    # see geometry.changed_data
 
     def note(self, changed):
         """The scene changed since the last drawing."""
@@ -95,7 +95,7 @@ def _close(address):
 
 @bpy.app.handlers.persistent
 def _updated(_scene, depsgraph=None):
-    changed = export.changed_data(depsgraph) if depsgraph and _regions else None
+    changed = geometry.changed_data(depsgraph) if depsgraph and _regions else None
     for shown in _regions.values():
         shown.note(changed)
 

@@ -32,6 +32,11 @@ class PenumbraViewLayerSettings(PropertyGroup):
         description="One pass per light, 'Shadow.' and the light's name: how much of that light arrives")
 
 
+class PenumbraObjectSettings(PropertyGroup):
+    receive_shadows: BoolProperty(
+        name="Receive Shadows", default=True, description="Other objects, and the object itself, shadow it")
+
+
 def preferences():
     addon = bpy.context.preferences.addons.get(__package__)
     return addon.preferences if addon else None
@@ -136,15 +141,17 @@ _classes = []
 def register():
     table = capi.library().techniques()
     technique_classes = [_technique_class(*row) for row in table]
-    _classes.extend([PenumbraPreferences, PenumbraViewLayerSettings, *technique_classes,
+    _classes.extend([PenumbraPreferences, PenumbraViewLayerSettings, PenumbraObjectSettings, *technique_classes,
                      _scene_class(table, technique_classes)])
     for cls in _classes:
         bpy.utils.register_class(cls)
     bpy.types.Scene.penumbra = PointerProperty(type=_classes[-1])
     bpy.types.ViewLayer.penumbra = PointerProperty(type=PenumbraViewLayerSettings)
+    bpy.types.Object.penumbra = PointerProperty(type=PenumbraObjectSettings)
 
 
 def unregister():
+    del bpy.types.Object.penumbra
     del bpy.types.ViewLayer.penumbra
     del bpy.types.Scene.penumbra
     while _classes:

@@ -4,12 +4,10 @@
 from array import array
 from ctypes import c_void_p
 
-from . import capi
+from . import capi, color_spaces
 
 # Uses of an image: its colour, its alpha channel, or its brightness as alpha.
 COLOR, ALPHA, GREY = 'color', 'alpha', 'grey'
-
-_LINEAR = {'Linear', 'Linear Rec.709', 'Raw'}
 
 
 class TextureCache:
@@ -18,14 +16,14 @@ class TextureCache:
     def __init__(self):
         self._kept = {}
 
-    def get(self, image, use, warnings):
-        """(handle or None, whether the caller has to destroy it)."""
-        key = (image.library and image.library.filepath, image.name, use)
+    def get(self, image, use, flags, warnings):
+        """(handle or None, whether the caller has to destroy it). `flags`: capi.TEXTURE_*."""
+        key = (image.library and image.library.filepath, image.name, use, flags)
         state = (tuple(image.size), image.filepath, image.colorspace_settings.name, image.alpha_mode)
         keep = image.source == 'FILE' and not image.is_dirty
         if keep and self._kept.get(key, (None,))[0] == state:
             return self._kept[key][1], False
-        handle = _create(image, use, warnings)
+        handle = _create(image, use, flags, warnings)
         if not keep or handle is None:
             return handle, True
         self._drop(key)
@@ -44,19 +42,38 @@ class TextureCache:
 cache = TextureCache()
 
 
-def _create(image, use, warnings):
+_EXTENSIONS = {'EXTEND': capi.TEXTURE_EXTEND, 'CLIP': capi.TEXTURE_CLIP, 'MIRROR': capi.TEXTURE_MIRROR}
+
+
+def node_flags(node):
+    """Of an Image Texture node."""
+    nearest = capi.TEXTURE_NEAREST if node.interpolation == 'Closest' else 0
+    return nearest | _EXTENSIONS.get(node.extension, 0)
+
+
+def pixels_of(image):
+    """Floats as RNA gives them, or None if the image is missing."""
     width, height = image.size
-    if not width or not height or not image.has_data:
+    if not width or not height:
+        return None
+    pixels = array('f', bytes(4 * len(image.pixels)))
+    image.pixels.foreach_get(pixels)
+    return pixels if image.has_data else None
+
+
+def _create(image, use, flags, warnings):
+    width, height = image.size
+    pixels = pixels_of(image)
+    if pixels is None:
         warnings.append(f"image '{image.name}' is missing ({image.filepath or 'no file'})")
         return None
     if image.source in {'MOVIE', 'SEQUENCE', 'TILED'}:
         warnings.append(f"image '{image.name}': of a {image.source.lower()} only one picture is used")
-    pixels = array('f', bytes(4 * len(image.pixels)))
-    image.pixels.foreach_get(pixels)
     channels = image.channels
     first, count = _channels(channels, use)
-    desc = capi.TextureDesc(name=image.name.encode(), width=width, height=height, channels=count)
-    desc.is_srgb = use != ALPHA and _is_srgb(image, warnings)
+    desc = capi.TextureDesc(name=image.name.encode(), width=width, height=height, channels=count, flags=flags)
+    if use != ALPHA:
+        desc.is_srgb = color_spaces.decode(pixels, channels, image, warnings)
     desc.pixels.data = c_void_p(pixels.buffer_info()[0] + 4 * first)
     desc.pixels.stride = 4 * channels
     try:
@@ -71,13 +88,3 @@ def _channels(channels, use):
     if use == ALPHA:
         return channels - 1, 1
     return 0, 3 if channels >= 3 else 1
-
-
-def _is_srgb(image, warnings):
-    """Byte images come as stored, float images already linear."""
-    space = image.colorspace_settings
-    if image.is_float or space.is_data or space.name in _LINEAR:
-        return False
-    if space.name != 'sRGB':
-        warnings.append(f"image '{image.name}': colour space {space.name} is taken for sRGB")
-    return True

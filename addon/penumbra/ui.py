@@ -131,6 +131,7 @@ class PENUMBRA_PT_light(_EnginePanel, Panel):
             column.prop(light, 'size', text="Size X" if two_sided else "Size")
             if two_sided:
                 column.prop(light, 'size_y', text="Y")
+            column.prop(light, 'spread')
         elif light.type == 'SUN':
             column.prop(light, 'angle')
         else:
@@ -147,6 +148,7 @@ class PENUMBRA_PT_object_visibility(_EnginePanel, Panel):
         column = self._column()
         column.prop(context.object, 'visible_camera', text="Camera")
         column.prop(context.object, 'visible_shadow', text="Shadow")
+        column.prop(context.object.penumbra, 'receive_shadows')
 
 
 class PENUMBRA_PT_composite(Panel):

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import capi, command_line, device, draw, export, jobs, settings, view
+from . import capi, command_line, device, draw, export, geometry, jobs, settings, view
 
 # Seconds between two looks at the library's thread.
 _POLL = 0.005
@@ -55,7 +55,7 @@ class Viewport:
     def __init__(self, host):
         self._host = host
         self._exported = None
-        self._kept = export.Kept()
+        self._kept = geometry.Kept()
         self._visibility = None     # what decides which objects this viewport shows
         self._version = 0           # of the exported scene
         self._wanted = None         # everything the picture depends on
@@ -123,7 +123,7 @@ class Viewport:
         self._schedule(context, depsgraph)
 
     def changes(self, depsgraph):
-        return export.changed_data(depsgraph)
+        return geometry.changed_data(depsgraph)
 
     def is_stale(self):
         """Whether the scene may have changed without an update."""
