@@ -90,6 +90,21 @@ def read_byte_image(path):
     return *size, pixels
 
 
+def render_exr(scene, path):
+    """Renders the frame; the channels of the multilayer EXR it wrote."""
+    settings = scene.render.image_settings
+    if hasattr(settings, 'media_type'):
+        settings.media_type = 'MULTI_LAYER_IMAGE'
+    settings.file_format = 'OPEN_EXR_MULTILAYER'
+    settings.color_depth = '32'
+    settings.exr_codec = 'NONE'
+    if hasattr(settings, 'use_exr_interleave'):
+        settings.use_exr_interleave = True  # else one part per pass
+    scene.render.filepath = path
+    bpy.ops.render.render(write_still=True, scene=scene.name)
+    return read_exr(path)
+
+
 class SceneTest(unittest.TestCase):
     """Starts from an empty scene for PENUMBRA with a small picture and 32-bit EXR output."""
 
@@ -113,17 +128,7 @@ class SceneTest(unittest.TestCase):
 
     def render(self, name="picture"):
         """Renders the frame and returns the channels of a multilayer EXR: name -> (width, height, floats)."""
-        settings = self.scene.render.image_settings
-        if hasattr(settings, 'media_type'):
-            settings.media_type = 'MULTI_LAYER_IMAGE'
-        settings.file_format = 'OPEN_EXR_MULTILAYER'
-        settings.color_depth = '32'
-        settings.exr_codec = 'NONE'
-        if hasattr(settings, 'use_exr_interleave'):
-            settings.use_exr_interleave = True  # else one part per pass
-        self.scene.render.filepath = output(name + '.exr')
-        bpy.ops.render.render(write_still=True)
-        return read_exr(output(name + '.exr'))
+        return render_exr(self.scene, output(name + '.exr'))
 
     def capture(self, name="scene"):
         path = output(name + '.pnb')
