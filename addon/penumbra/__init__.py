@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, compositing, device, engine, overlay, props, report, textures, ui, viewport
+from . import capi, compositing, device, engine, overlay, presets, props, report, textures, ui, viewport
 
 bl_info = {
     "name": "Penumbra",
@@ -15,7 +15,8 @@ bl_info = {
     "category": "Render",
 }
 
-_CLASSES = (engine.PenumbraEngine, engine.PENUMBRA_OT_capture, report.PENUMBRA_OT_report, *compositing.CLASSES)
+_CLASSES = (engine.PenumbraEngine, engine.PENUMBRA_OT_capture, presets.PENUMBRA_OT_preset, report.PENUMBRA_OT_report,
+            *compositing.CLASSES)
 
 
 @bpy.app.handlers.persistent

@@ -62,7 +62,10 @@ def _layers_node(tree, scene, layer):
 
 def _multiply(tree, scene, view_layer, socket, shadow):
     """Between an output's image and what feeds it."""
-    source = socket.links[0].from_socket if socket.links else _layers_node(tree, scene, view_layer.name).outputs['Image']
+    if socket.links:
+        source = socket.links[0].from_socket
+    else:
+        source = _layers_node(tree, scene, view_layer.name).outputs['Image']
     node, first, second, result = compat.new_multiply_node(tree)
     node[_MARK] = True
     node.label = "Soft Shadows"

@@ -26,21 +26,32 @@ def draw_picture(texture, x, y, width, height):
     gpu.state.blend_set('NONE')
 
 
-# ---- Shadows over what another engine drew ----
+# ---- The Shadow pass: over what another engine drew, or by itself ----
+
+# Multiplied with what lies below; as it is; lit, penumbra and umbra by colours.
+MULTIPLY, SHOW, CLASSIFY = range(3)
 
 _shadow_shader = None
 _SHADOW_VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
-# Premultiplied black of this alpha is a multiplication of what lies below.
+# Premultiplied black of some alpha is a multiplication of what lies below.
 _SHADOW_FRAGMENT = """
 void main() {
-    ivec2 pixel = ivec2((gl_FragCoord.xy - place.xy) / place.zw * vec2(size));
-    if (any(lessThan(gl_FragCoord.xy, place.xy)) || any(greaterThanEqual(pixel, size)))
+    ivec2 pixel = ivec2(floor((gl_FragCoord.xy - place.xy) / place.zw * vec2(size)));
+    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size)))
         discard;
-    float light = 0.0;
+    vec3 light;
     for (int channel = 0; channel < 3; channel++)
-        light += texelFetch(shadow, ivec2(3 * pixel.x + channel, pixel.y), 0).r / 3.0;
-    float alpha = (1.0 - clamp(light, 0.0, 1.0)) * color.a;
-    result = vec4(color.rgb * alpha, alpha);
+        light[channel] = texelFetch(shadow, ivec2(3 * pixel.x + channel, pixel.y), 0).r;
+    light = clamp(light, vec3(0.0), vec3(1.0));
+    float mean = dot(light, vec3(1.0 / 3.0));
+    if (mode == 0)
+        result = vec4(color.rgb, 1.0) * (1.0 - mean) * color.a;
+    else if (mode == 1)
+        result = vec4(light, 1.0);
+    else
+        result = mean > 0.999 ? vec4(0.8, 0.7, 0.3, 1.0)
+               : mean < 0.001 ? vec4(0.02, 0.05, 0.3, 1.0)
+                              : vec4(mix(vec3(0.25, 0.0, 0.1), vec3(0.9, 0.2, 0.05), mean), 1.0);
 }
 """
 
@@ -50,8 +61,8 @@ def make_shadow_texture(width, height, pixels):
     return gpu.types.GPUTexture((3 * width, height), format='R32F', data=gpu.types.Buffer('FLOAT', len(pixels), pixels))
 
 
-def draw_shadow(texture, size, place, color):
-    """`size`: of the picture; `place`: x, y, width, height in the region; `color`: RGB and strength."""
+def draw_shadow(texture, size, place, mode, color=(0.0, 0.0, 0.0, 1.0)):
+    """`size`: of the picture; `place`: x, y, width, height in the region; `color`: RGB and strength of MULTIPLY."""
     shader = _get_shadow_shader()
     batch = batch_for_shader(shader, 'TRIS', {'position': ((-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0))})
     gpu.state.blend_set('ALPHA_PREMULT')
@@ -61,6 +72,7 @@ def draw_shadow(texture, size, place, color):
     shader.uniform_float('place', place)
     shader.uniform_float('color', color)
     shader.uniform_int('size', size)
+    shader.uniform_int('mode', mode)
     batch.draw(shader)
     gpu.state.blend_set('NONE')
 
@@ -74,6 +86,7 @@ def _get_shadow_shader():
         info.push_constant('VEC4', 'place')
         info.push_constant('VEC4', 'color')
         info.push_constant('IVEC2', 'size')
+        info.push_constant('INT', 'mode')
         info.fragment_out(0, 'VEC4', 'result')
         info.vertex_source(_SHADOW_VERTEX)
         info.fragment_source(_SHADOW_FRAGMENT)

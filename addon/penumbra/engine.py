@@ -8,7 +8,7 @@ from ctypes import byref, c_void_p
 
 import bpy
 
-from . import capi, command_line, device, export, passes, report, settings, viewport
+from . import capi, command_line, device, export, passes, report, settings, statistics, viewport
 
 # How long a wait for the library may delay a cancel, in milliseconds.
 POLL_MS = 20
@@ -119,7 +119,9 @@ class PenumbraEngine(bpy.types.RenderEngine):
                 done = self._wait(job, exported.warnings)
                 if done:
                     passes.fill_layer(result.layers[0], depsgraph.view_layer, job, *values.crop[2:])
-                    self._show_statistics(job)
+                    timings = list(_timings(job))
+                    statistics.record("Still", exported, values, timings, context)
+                    self._show_statistics(timings)
             finally:
                 capi.library().destroy('job', job)
         finally:
@@ -150,8 +152,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
                         for index in range(library.job_message_count(job)))
         return True
 
-    def _show_statistics(self, job):
-        timings = list(_timings(job))
+    def _show_statistics(self, timings):
         megabytes = sum(timing.bytes for timing in timings) / 2 ** 20
         self.update_memory_stats(memory_used=megabytes, memory_peak=megabytes)
         if 'stats' not in command_line.options():

@@ -19,11 +19,12 @@ class ExportedMaterial(NamedTuple):
 class Template:
     """All bytes of a capi.Instance but its matrix."""
 
-    def __init__(self, instance, is_hair):
+    def __init__(self, instance, is_hair, triangles):
         content = bytes(instance)
         field = capi.Instance.matrix
         self.head, self.tail = content[:field.offset], content[field.offset + field.size:]
         self.is_hair = is_hair
+        self.triangles = triangles
         self._instance = instance   # keeps the name
 
 
@@ -34,6 +35,7 @@ class SceneExport:
         """`kept`: a Kept that outlives this export; `shown_in`: only what this 3D view's local view shows."""
         self.scene = capi.Scene(camera=capi.Camera())
         self.warnings = []
+        self.triangle_count = 0     # of all instances
         self._kept = kept
         self._meshes = MeshStore(depsgraph.mode == 'RENDER', use_pointers, kept, self.warnings)
         self._shown_in = shown_in
@@ -90,6 +92,7 @@ class SceneExport:
                 if particles[number] if template.is_hair else shown[number]:
                     pieces += template.head, places[64 * number:64 * number + 64], template.tail
                     numbers.append(number)
+                    self.triangle_count += template.triangles
         self._instances = (capi.Instance * len(numbers)).from_buffer(bytearray(b''.join(pieces)))
         self.scene.instance_count = len(numbers)
         if self._links:
@@ -119,9 +122,10 @@ class SceneExport:
         mesh = self._meshes.of(ob, tuple(material.needs for material in slots))
         indices = tuple(material.index for material in slots)
         if mesh:
-            yield Template(self._instance(ob, ob.name, mesh, indices), False)
+            triangles = len(ob.data.loop_triangles) if ob.type == 'MESH' else 0
+            yield Template(self._instance(ob, ob.name, mesh, indices), False, triangles)
         for name, mesh, slot in self._meshes.hair(ob):
-            yield Template(self._instance(ob, name, mesh, indices[min(slot, len(indices) - 1):][:1]), True)
+            yield Template(self._instance(ob, name, mesh, indices[min(slot, len(indices) - 1):][:1]), True, 0)
 
     def _instance(self, ob, name, mesh, slots):
         return capi.Instance(mesh=mesh, name=name.encode(), flags=self._flags(ob), first_slot=self._first_slot(slots),

@@ -31,15 +31,15 @@ class Job:
     def wait(self, milliseconds):
         capi.library().job_wait(self._handle, milliseconds, None)
 
-    def picture(self):
-        """(floats of the first image as ctypes array, their number of samples). Valid as long as the job."""
+    def picture(self, index):
+        """(floats of an image as ctypes array, their number of samples). Valid as long as the job."""
         if self.is_done():
             image = capi.Image()
-            capi.library().job_get_image(self._handle, 0, byref(image))
+            capi.library().job_get_image(self._handle, index, byref(image))
             return (c_float * (self.channels * self.width * self.height)).from_address(image.pixels), self.samples
         count = c_uint32()
         pixels = (c_float * (self.channels * self.width * self.height))()
-        capi.library().job_copy_image(self._handle, 0, pixels, len(pixels), byref(count))
+        capi.library().job_copy_image(self._handle, index, pixels, len(pixels), byref(count))
         return pixels, count.value
 
     def messages(self):

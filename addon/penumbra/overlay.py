@@ -29,18 +29,14 @@ class RegionHost:
         """Overlays have no place for one."""
 
 
-class ShadowPicture(viewport.Picture):
-    def make_texture(self, job, pixels):
-        return draw.make_shadow_texture(job.width, job.height, pixels)
-
+class OverlayPicture(viewport.ShadowPicture):
     def draw(self, region):
         options = bpy.context.scene.penumbra
-        draw.draw_shadow(self.texture, self.size, self.place(region), (*options.overlay_color, options.overlay_strength))
+        draw.draw_shadow(self.texture, self.size, self.place(region), draw.MULTIPLY,
+                         (*options.overlay_color, options.overlay_strength))
 
 
 class ShadowViewport(viewport.Viewport):
-    image = capi.PASS_SHADOW
-
     def __init__(self, host):
         super().__init__(host)
         self._stale = True
@@ -59,8 +55,8 @@ class ShadowViewport(viewport.Viewport):
         self._stale, self._changed = False, set()
         return changed
 
-    def make_picture(self, run):
-        return ShadowPicture(run)
+    def image_wanted(self, scene):
+        return viewport.ImageWanted(capi.PASS_SHADOW, 0, OverlayPicture)
 
 
 def _all_regions():

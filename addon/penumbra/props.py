@@ -98,8 +98,16 @@ def _scene_class(table, technique_classes):
             name="Latency", default=100, min=10, max=2000,
             description="Milliseconds within which a viewport shall follow input: its first picture has as many pixels "
                         "as fit into that time"),
+        'viewport_view': EnumProperty(
+            name="View", description="What rendered viewports show", items=[
+                ('FINAL', "Final", "The picture", 0),
+                ('SHADOW', "Shadow", "How much of the light arrives", 1),
+                ('LIGHT', "Shadow of One Light", "How much of one light arrives", 2),
+                ('CLASSES', "Lit, Penumbra, Umbra", "Yellow: lit; red: penumbra; blue: umbra", 3)]),
+        'viewport_light': StringProperty(name="Light", description="The light whose shadow is shown"),
         'use_overlay': BoolProperty(
-            name="Soft Shadows", description="Multiply Penumbra's soft shadows over what other engines draw in viewports"),
+            name="Soft Shadows",
+            description="Multiply Penumbra's soft shadows over what other engines draw in viewports"),
         'overlay_strength': FloatProperty(
             name="Strength", default=1.0, min=0.0, max=1.0, subtype='FACTOR', description="1: as dark as they are"),
         'overlay_color': FloatVectorProperty(

@@ -6,7 +6,7 @@ import textwrap
 import bpy
 from bpy.types import Panel
 
-from . import compat, compositing, props, report
+from . import compat, compositing, presets, props, report, statistics
 
 ENGINE = 'PENUMBRA'
 
@@ -59,6 +59,9 @@ class PENUMBRA_PT_technique(_EnginePanel, Panel):
     bl_context = 'render'
 
     def draw(self, context):
+        row = self.layout.row(align=True)
+        for name in presets.PRESETS:
+            row.operator(presets.PENUMBRA_OT_preset.bl_idname, text=name.capitalize()).preset = name
         draw_technique(self._column(), context)
 
 
@@ -72,9 +75,62 @@ class PENUMBRA_PT_sampling(_EnginePanel, Panel):
         column.prop(settings, 'samples', text="Render")
         column.prop(settings, 'viewport_samples', text="Viewport")
         column.prop(settings, 'light_samples')
-        column.separator()
+
+
+class PENUMBRA_PT_performance(_EnginePanel, Panel):
+    bl_label = "Performance"
+    bl_context = 'render'
+
+    def draw(self, context):
+        settings = context.scene.penumbra
+        column = self._column()
         column.prop(settings, 'viewport_latency')
         column.prop(settings, 'use_refine')
+        column.prop(context.scene.render, 'preview_pixel_size', text="Pixel Size")
+
+
+class PENUMBRA_PT_debug(_EnginePanel, Panel):
+    bl_label = "Viewport View"
+    bl_context = 'render'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        settings = context.scene.penumbra
+        column = self._column()
+        column.prop(settings, 'viewport_view')
+        if settings.viewport_view == 'LIGHT':
+            column.prop_search(settings, 'viewport_light', context.scene, 'objects', icon='LIGHT')
+
+
+class PENUMBRA_PT_statistics(_EnginePanel, Panel):
+    bl_label = "Statistics"
+    bl_context = 'render'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        last = statistics.last
+        if last is None:
+            self.layout.label(text="Nothing was rendered yet")
+            return
+        _paragraph(self.layout, f"{last.what}: {last.size[0]} x {last.size[1]} pixels, {last.samples} samples, "
+                                f"{last.triangles} triangles, {last.lights} lights", context)
+        _paragraph(self.layout, last.renderer, context)
+        table = self.layout.column(align=True)
+        table.scale_y = 0.8
+        self._row(table, "Pass", "Times", "ms", "MiB")
+        for item in last.passes:
+            self._row(table, item.name, str(item.count), f"{item.gpu_ms:.1f}", f"{item.megabytes:.1f}")
+        self._row(table, "Sum", "", f"{last.milliseconds():.1f}", f"{last.megabytes():.1f}")
+
+    def _row(self, layout, name, *numbers):
+        split = layout.split(factor=0.55)
+        split.label(text=name)
+        row = split.row()
+        row.alignment = 'RIGHT'
+        for number in numbers:
+            cell = row.row()
+            cell.alignment = 'RIGHT'
+            cell.label(text=number)
 
 
 class PENUMBRA_PT_film(_EnginePanel, Panel):
@@ -175,7 +231,8 @@ class PENUMBRA_PT_composite(Panel):
             column.prop(context.scene.penumbra, 'samples')
 
 
-CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_film, PENUMBRA_PT_report, PENUMBRA_PT_passes,
+CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_performance, PENUMBRA_PT_film, PENUMBRA_PT_debug,
+           PENUMBRA_PT_statistics, PENUMBRA_PT_report, PENUMBRA_PT_passes,
            PENUMBRA_PT_light, PENUMBRA_PT_object_visibility, PENUMBRA_PT_composite)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The rendered viewport. A region's engine exports the scene when Blender says that it changed, renders on the library's
-thread and draws the newest picture: first a quick one, then all pixels and more samples, then the reference."""
+"""The rendered viewport. A region's engine exports the scene when Blender says that it changed, renders on the
+library's thread and draws the newest picture: first a quick one, then all pixels and more samples, then the
+reference."""
 
 import time
 import traceback
@@ -9,7 +10,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import capi, command_line, device, draw, export, geometry, jobs, settings, view
+from . import capi, command_line, device, draw, export, geometry, jobs, settings, statistics, view
 
 # Seconds between two looks at the library's thread.
 _POLL = 0.005
@@ -50,8 +51,6 @@ class EngineHost:
 
 class Viewport:
     """What one region shows and what is being done for it. Lives as long as the region's engine."""
-    image = capi.PASS_COMBINED
-
     def __init__(self, host):
         self._host = host
         self._exported = None
@@ -142,6 +141,7 @@ class Viewport:
         # A change of our settings does not update the evaluated scene.
         scene = depsgraph.scene
         wanted = Wanted(self._version, view.read(context, depsgraph.scene_eval), settings.viewport_key(scene),
+                        self.image_wanted(scene),
                         self._host.pixel_scale(scene))
         if wanted != self._wanted:
             self._wanted = wanted
@@ -161,7 +161,7 @@ class Viewport:
             _wake()
             return
         kind, self._next = self._next[0], None
-        self._run = Run(kind, self._wanted, self._exported, scene, self._speed, self.image)
+        self._run = Run(kind, self._wanted, self._exported, scene, self._speed)
         if kind == _FIRST and self._speed.expected(self._run.scale) <= _WAIT_MS:
             self._run.job.wait(_WAIT_MS)
         _wake()
@@ -176,7 +176,7 @@ class Viewport:
             if samples > run.samples_taken:
                 if run.kind == _FIRST:
                     self._speed.add(run.scale, run.elapsed_ms())
-                self._picture = self.make_picture(run)
+                self._picture = run.wanted.image.picture(run)
         except capi.Error as error:
             self._stop_run()
             if error.result != capi.CANCELLED:
@@ -186,10 +186,20 @@ class Viewport:
         if run.samples_taken == run.job.samples:
             self._finish(run)
 
-    def make_picture(self, run):
-        return Picture(run)
+    def image_wanted(self, scene):
+        """By the debug view."""
+        view_name = scene.penumbra.viewport_view
+        if view_name == 'FINAL':
+            return ImageWanted(capi.PASS_COMBINED, 0, Picture)
+        if view_name != 'LIGHT':
+            return ImageWanted(capi.PASS_SHADOW, 0, ShadowPicture if view_name == 'SHADOW' else ClassesPicture)
+        names = [light.name.decode() for light in self._exported.scene.lights[:self._exported.scene.light_count]]
+        if scene.penumbra.viewport_light not in names:
+            return ImageWanted(capi.PASS_SHADOW, 0, ShadowPicture)
+        return ImageWanted(capi.PASS_LIGHT_SHADOWS, names.index(scene.penumbra.viewport_light), ShadowPicture)
 
     def _finish(self, run):
+        run.record_statistics()
         self._stop_run()
         if self._next is None and run.wanted == self._wanted:
             follows = run.following_kind()
@@ -223,18 +233,25 @@ class Viewport:
                                self._picture.label if self._picture else "Preparing")
 
 
+class ImageWanted(NamedTuple):
+    image_pass: int         # of the library
+    index: int              # among the images of that pass
+    picture: type           # what draws it
+
+
 class Wanted(NamedTuple):
     """Everything a picture depends on, compared by value."""
     version: int            # of the exported scene
     view: view.View
     key: tuple              # of the settings
+    image: ImageWanted
     pixel_scale: float
 
 
 class Run:
     """One job and the picture it makes."""
 
-    def __init__(self, kind, wanted, exported, scene, speed, image):
+    def __init__(self, kind, wanted, exported, scene, speed):
         self.kind, self.wanted = kind, wanted
         options = scene.penumbra
         self.scale = wanted.pixel_scale * (speed.choose(options.viewport_latency) if kind == _FIRST else 1.0)
@@ -243,13 +260,19 @@ class Run:
         self._options = options.technique, options.use_refine, options.viewport_samples
         width, height = (max(1, int(size * self.scale + 0.5)) for size in wanted.view[:2])
         values = settings.for_viewport(scene, width, height, view.crop(wanted.view, width, height),
-                                       1 if kind == _FIRST else options.viewport_samples, kind == _REFERENCE, image)
+                                       1 if kind == _FIRST else options.viewport_samples, kind == _REFERENCE,
+                                       wanted.image.image_pass)
         self.technique = values.technique.decode()
         self.size = width, height
         self.crop = tuple(values.crop)
         view.fill_camera(exported.scene.camera, wanted.view)
         self._started = time.monotonic()
-        self.job = jobs.Job(device.context(settings.backend()), exported.scene, values)
+        self._exported, self._values = exported, values
+        self._context = device.context(settings.backend())
+        self.job = jobs.Job(self._context, exported.scene, values)
+
+    def record_statistics(self):
+        statistics.record("Viewport", self._exported, self._values, self.job.timings(), self._context)
 
     def elapsed_ms(self):
         return (time.monotonic() - self._started) * 1000.0
@@ -277,7 +300,7 @@ class Picture:
     """The newest picture of a run."""
 
     def __init__(self, run):
-        pixels, run.samples_taken = run.job.picture()
+        pixels, run.samples_taken = run.job.picture(run.wanted.image.index)
         self.texture = self.make_texture(run.job, pixels)
         self.size = run.job.width, run.job.height
         self._crop, self._size = run.crop, run.size
@@ -296,6 +319,22 @@ class Picture:
 
     def draw(self, region):
         draw.draw_picture(self.texture, *self.place(region))
+
+
+class ShadowPicture(Picture):
+    """The Shadow pass, or that of a light."""
+    mode = draw.SHOW
+
+    def make_texture(self, job, pixels):
+        return draw.make_shadow_texture(job.width, job.height, pixels)
+
+    def draw(self, region):
+        draw.draw_shadow(self.texture, self.size, self.place(region), self.mode)
+
+
+class ClassesPicture(ShadowPicture):
+    """Lit, penumbra and umbra."""
+    mode = draw.CLASSIFY
 
 
 class Speed:
