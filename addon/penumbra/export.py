@@ -28,6 +28,10 @@ class Template:
         self._instance = instance   # keeps the name
 
 
+# What is drawn of a light.
+LIGHT = ()
+
+
 class SceneExport:
     """A pnb_scene and all it points to; `close` it when the library has copied it."""
 
@@ -84,9 +88,10 @@ class SceneExport:
         instances.foreach_get('show_self', shown)
         instances.foreach_get('show_particles', particles)
         places = memoryview(matrices).cast('B')
+        shows_all = self._shown_in is None
         pieces, numbers = [], []
         for number, instance in enumerate(instances):
-            if not (shown[number] or particles[number]) or not self._is_shown(instance):
+            if not (shown[number] or particles[number]) or not (shows_all or self._is_shown(instance)):
                 continue
             for template in self._templates_of(instance):
                 if particles[number] if template.is_hair else shown[number]:
@@ -99,23 +104,21 @@ class SceneExport:
             self._link_lights(instances, numbers)
 
     def _is_shown(self, instance):
-        if self._shown_in is None:
-            return True
         return (instance.parent or instance.object).original.visible_in_viewport_get(self._shown_in)
 
     def _templates_of(self, instance):
         """What is drawn of an object. Instances of geometry come as one object with changing data."""
         ob, parent = instance.object, instance.parent
-        if ob.type == 'LIGHT':
-            self._add_light(ob, parent, instance.matrix_world)
-            return ()
         data = ob.data
         if data is None:
             return ()
-        key = ob.as_pointer(), data.as_pointer(), parent.as_pointer() if parent else 0
-        if key not in self._templates:
-            self._templates[key] = list(self._make_templates(ob))
-        return self._templates[key]
+        key = ob.as_pointer(), data.as_pointer(), parent and parent.as_pointer()
+        templates = self._templates.get(key)
+        if templates is None:
+            templates = self._templates[key] = LIGHT if ob.type == 'LIGHT' else list(self._make_templates(ob))
+        if templates is LIGHT:
+            self._add_light(ob, parent, instance.matrix_world)
+        return templates
 
     def _make_templates(self, ob):
         slots = [self._material(slot.material) for slot in ob.material_slots]
@@ -190,6 +193,9 @@ class SceneExport:
 
     def _set_arrays(self):
         scene = self.scene
+        for light in self._lights[capi.MAX_LIGHTS:]:
+            self.warnings.append(f"light '{light.name.decode()}': it is left out, there are more than {capi.MAX_LIGHTS}")
+        del self._lights[capi.MAX_LIGHTS:]
         scene.instances = self._instances
         scene.materials = (capi.Material * len(self._material_list))(*self._material_list)
         scene.material_count = len(self._material_list)

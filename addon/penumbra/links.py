@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light and shadow linking, from Blender 4.0 on: which objects a light lights, and which shadow it."""
 
-from . import compat
+from . import capi, compat
 
 
 class LightLinks:
@@ -14,7 +14,7 @@ class LightLinks:
     def add_light(self, index, owner):
         """`owner`: the light's object, or the one that instances it."""
         linking = compat.light_linking(owner.original)
-        if linking is None or index >= 64:
+        if linking is None or index >= capi.MAX_LIGHTS:
             return
         for collection, rules in ((linking.receiver_collection, self._unlit),
                                   (linking.blocker_collection, self._unshadowed)):
