@@ -4,12 +4,14 @@ set -euo pipefail
 
 help() {
     cat <<EOT
-Usage: tests/blender/matrix.sh [--only VERSION] BUILD_DIR [--window] [TEST...]
+Usage: tests/blender/matrix.sh [--only VERSION] [--scenes] BUILD_DIR [--window] [TEST...]
 Runs the tests of this folder in three Blenders: the system's, and those of Debian trixie (4.3) and sid (5.2) in roots
 of their own, made with debootstrap from the mirror that apt uses and kept in BUILD_DIR/matrix, or in the folder that
 PENUMBRA_CACHE names. A root takes about 2 GB; delete it to make it anew. Needs root. The last line counts all tests.
 
   --only VERSION   system, trixie or sid; may be given several times
+  --scenes         instead of the tests, compares the scenes of scenes/ with Cycles, or those named, and writes
+                   BUILD_DIR/scenes/report.html; takes about ten minutes a version
   TEST             a module, class or method such as test_render.Sizes
   --window         only tests that need a window; TEST then is one of them
 EOT
@@ -23,6 +25,7 @@ fail() {
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 source=$(CDPATH='' cd -- "$here/../.." && pwd)
 versions=()
+scenes=
 while [ $# -gt 0 ]; do
     case $1 in
     --help) help; exit 0 ;;
@@ -30,6 +33,7 @@ while [ $# -gt 0 ]; do
         [[ ${2-} =~ ^(system|trixie|sid)$ ]] || fail "--only needs system, trixie or sid"
         versions+=("$2")
         shift 2 ;;
+    --scenes) scenes=1; shift ;;
     -*) fail "unknown option '$1'; see --help" ;;
     *) break ;;
     esac
@@ -41,7 +45,8 @@ shift
 [ ${#versions[@]} -gt 0 ] || versions=(system trixie sid)
 cache=${PENUMBRA_CACHE:-$build/matrix}
 logs=$build/tests
-mkdir -p "$cache" "$logs"
+results=$build/scenes
+mkdir -p "$cache" "$logs" "$results"
 cache=$(CDPATH='' cd -- "$cache" && pwd)
 
 # ---- Roots ----
@@ -57,16 +62,17 @@ mirror() {
 in_root() {
     # shellcheck disable=SC2016
     unshare --mount sh -c '
-        root=$1 source=$2 build=$3
-        shift 3
-        mkdir -p "$root/penumbra/source" "$root/penumbra/build"
+        root=$1 source=$2 build=$3 results=$4
+        shift 4
+        mkdir -p "$root/penumbra/source" "$root/penumbra/build" "$root/penumbra/results"
         mount -t proc proc "$root/proc"
         mount --rbind /dev "$root/dev"
         mount -t tmpfs tmpfs "$root/tmp"
         mount --bind -o ro "$source" "$root/penumbra/source"
         mount --bind -o ro "$build" "$root/penumbra/build"
+        mount --bind "$results" "$root/penumbra/results"
         exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
-            chroot "$root" "$@"' sh "$1" "$source" "$build" "${@:2}"
+            chroot "$root" "$@"' sh "$1" "$source" "$build" "$results" "${@:2}"
 }
 
 check_room() {
@@ -96,6 +102,22 @@ make_root() {
 
 passed=0 failed=0 summary=
 
+# run_inside VERSION SOURCE BUILD RESULTS [TEST...]: with the folders as that Blender sees them.
+run_inside() {
+    local version=$1 source_there=$2 build_there=$3 results_there=$4 command=()
+    shift 4
+    if [ -n "$scenes" ]; then
+        command=(sh "$source_there/tests/blender/scenes/run.sh" "$build_there" "$results_there" "$@")
+    else
+        command=(sh "$source_there/tests/blender/run.sh" "$build_there" "$@")
+    fi
+    if [ "$version" = system ]; then
+        "${command[@]}"
+    else
+        in_root "$cache/$version" "${command[@]}"
+    fi
+}
+
 run_version() {
     local version=$1 log=$logs/matrix-$1.log status=0 start counts name
     shift
@@ -108,9 +130,9 @@ run_version() {
     echo "---- $version"
     start=$SECONDS
     if [ "$version" = system ]; then
-        sh "$here/run.sh" "$build" "$@"
+        run_inside system "$source" "$build" "$results" "$@"
     else
-        in_root "$cache/$version" sh /penumbra/source/tests/blender/run.sh /penumbra/build "$@"
+        run_inside "$version" /penumbra/source /penumbra/build /penumbra/results "$@"
     fi 2>&1 | tee "$log" || status=1
     # Without and with a window.
     counts=$(awk '/^[0-9]+ passed, [0-9]+ failed$/ { passed += $1; failed += $3; n++ }
@@ -133,5 +155,6 @@ for version in "${versions[@]}"; do
 done
 echo "---- all, $SECONDS s"
 printf '%s' "$summary"
+[ -z "$scenes" ] || python3 "$here/scenes/report.py" "$results"
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
