@@ -13,7 +13,7 @@ uniform int translucency; // passes.h: enum translucency
 uniform int sample_index;
 
 // Whether the map keeps a fragment that lets this share of the light through.
-bool is_kept(vec3 transmittance) {
+bool is_kept(vec3 transmittance, float depth) {
     float opacity = 1.0 - dot(transmittance, vec3(1.0 / 3.0));
     if (translucency == 0)
         return opacity >= 0.5;
@@ -21,17 +21,20 @@ bool is_kept(vec3 transmittance) {
         return all(lessThan(transmittance, vec3(TRANSMITTANCE_OPAQUE)));
     if (translucency == 3)
         return any(lessThan(transmittance, vec3(TRANSMITTANCE_CLEAR)));
-    float jitter = fragment_random(uvec2(gl_FragCoord.xy), gl_FragCoord.w + gl_FragCoord.z); // w: 1 without perspective
+    float jitter = fragment_random(uvec2(gl_FragCoord.xy), depth);
     return opacity >= fract(jitter + float(sample_index) * 0.61803399) + 1e-6;
 }
 #endif
 
 void main() {
-#ifdef SPECIAL
-    if (is_culled() || !is_kept(material_transmittance(uv)))
-        discard;
-#endif
 #ifdef PERSPECTIVE
-    gl_FragDepth = (1.0 / gl_FragCoord.w - depth_planes.x) / (depth_planes.y - depth_planes.x);
+    float depth = (1.0 / gl_FragCoord.w - depth_planes.x) / (depth_planes.y - depth_planes.x);
+    gl_FragDepth = depth;
+#else
+    float depth = gl_FragCoord.z;
+#endif
+#ifdef SPECIAL
+    if (is_culled() || !is_kept(material_transmittance(uv), depth))
+        discard;
 #endif
 }
