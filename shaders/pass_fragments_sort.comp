@@ -4,6 +4,7 @@
 
 layout(local_size_x = 64) in;
 uniform uint head_count;
+uniform uint most; // fragments of a list that are kept, 0: all
 
 struct entry {
     uint words[FRAGMENT_WORDS];
@@ -56,4 +57,6 @@ void main() {
     for (; gap > 0u; gap /= 3u)
         for (uint position = gap; position < count; position++)
             insert(first, position, gap);
+    if (most > 0u)
+        heads[2u * head + 1u] = min(count, most);
 }

@@ -97,6 +97,7 @@
     X(PFNGLTEXSUBIMAGE2DPROC, TexSubImage2D)                                                                           \
     X(PFNGLVERTEXATTRIBIPOINTERPROC, VertexAttribIPointer)                                                             \
     X(PFNGLUNIFORM1FPROC, Uniform1f)                                                                                   \
+    X(PFNGLUNIFORM1FVPROC, Uniform1fv)                                                                                 \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                                                                                   \
     X(PFNGLUNIFORM1UIPROC, Uniform1ui)                                                                                 \
     X(PFNGLUNIFORM2FVPROC, Uniform2fv)                                                                                 \

@@ -7,7 +7,7 @@ const char *fragment_defines(const struct scene *scene) {
     return scene->colored ? "#define COLORED\n" : NULL;
 }
 
-static uint64_t fragment_size(const struct scene *scene) {
+uint64_t fragment_size(const struct scene *scene) {
     return scene->colored ? 12 : 8;
 }
 
@@ -81,7 +81,7 @@ static pnb_result draw_views(struct frame *frame, const struct light_views *view
 
 /* A pass over every list. */
 static pnb_result dispatch(struct frame *frame, const char *name, const char *shader, uint32_t heads,
-                           uint32_t per_group, const struct fragment_lists *lists) {
+                           uint32_t per_group, uint32_t most, const struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
     const struct program_desc desc = {.compute = shader, .defines = {fragment_defines(frame->scene)}};
     GLuint program;
@@ -90,6 +90,7 @@ static pnb_result dispatch(struct frame *frame, const char *name, const char *sh
         return result;
     fragment_lists_bind(gl, lists);
     gl->Uniform1ui(gl->GetUniformLocation(program, "head_count"), heads);
+    gl->Uniform1ui(gl->GetUniformLocation(program, "most"), most);
     const uint32_t groups = (heads + per_group - 1) / per_group;
     gl->DispatchCompute(groups < MOST_GROUPS ? groups : MOST_GROUPS, (groups + MOST_GROUPS - 1) / MOST_GROUPS, 1);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -104,7 +105,7 @@ static pnb_result scan(struct frame *frame, uint32_t heads, struct fragment_list
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, cursor);
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, &zero, GL_STREAM_READ);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, cursor);
-    pnb_result result = dispatch(frame, "Fragment scan", "pass_fragments_scan.comp", heads, 256 * 16, lists);
+    pnb_result result = dispatch(frame, "Fragment scan", "pass_fragments_scan.comp", heads, 256 * 16, 0, lists);
     if (result != PNB_OK)
         return result;
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, cursor);
@@ -113,7 +114,8 @@ static pnb_result scan(struct frame *frame, uint32_t heads, struct fragment_list
 }
 
 pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
-                               const struct gl_texture *map, const char *what, struct fragment_lists *lists) {
+                               uint32_t most, const struct gl_texture *map, const char *what,
+                               struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
     const uint64_t heads = (uint64_t)map->width * (uint64_t)map->width * (uint64_t)views->count;
     pnb_result result = gl_buffer_ensure(gl, &lists->heads, heads * 8, 0, what);
@@ -128,5 +130,5 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
             PNB_OK ||
         (result = draw_views(frame, views, true, casters, map, lists)) != PNB_OK)
         return result;
-    return dispatch(frame, "Fragment sort", "pass_fragments_sort.comp", (uint32_t)heads, 64, lists);
+    return dispatch(frame, "Fragment sort", "pass_fragments_sort.comp", (uint32_t)heads, 64, most, lists);
 }

@@ -63,12 +63,29 @@ void draw_tiles(struct frame *frame, GLuint program, bool undecided_only);
 enum translucency { TRANSLUCENCY_CUT, TRANSLUCENCY_STOCHASTIC, TRANSLUCENCY_OPAQUE, TRANSLUCENCY_ANY };
 pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, enum translucency translucency,
                            struct gl_texture *map);
-/* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor
- * clear. Draws at the size of `map`, which it leaves as it is. what: for messages, names the light. */
-pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
+/* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor clear.
+ * Draws at the size of `map`, which it leaves as it is. most: of each list the nearest so many are kept, 0: all. what:
+ * for messages, names the light. */
+pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters, uint32_t most,
                                const struct gl_texture *map, const char *what, struct fragment_lists *lists);
 void fragment_lists_bind(const struct gl *gl, const struct fragment_lists *lists);
 void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists);
+/* fragment_filter.c: lists of a map of so many texels per side -> further levels of them. */
+struct fragment_filter {
+    int level_count;       /* at most, with the lists themselves */
+    int stack_side;        /* a level of no more texels per side is followed by a stack; 0: never */
+    int subsampled_levels; /* the first so many leave out texels instead of merging them */
+    int accumulation;      /* of what is merged behind one another: 0 adds opacities, 1 multiplies, 2 takes the greatest */
+    float merge_distance;  /* depths so close become one, in widths of a level's texel in the MIP map */
+    float light_size;      /* side of the emitter, metres; SUN: its extent at distance 1 */
+};
+pnb_result pass_fragment_filter(struct frame *frame, const struct light_views *views, const struct fragment_filter *filter,
+                                int side, const char *what, struct fragment_lists *lists);
+/* The levels there will be; gives their number. */
+uint32_t fragment_levels(struct fragment_level levels[MAX_FRAGMENT_LEVELS], const struct fragment_filter *filter, int side,
+                         int layers);
+/* Bytes of one fragment. */
+uint64_t fragment_size(const struct scene *scene);
 /* What every shader that includes common_fragments.glsl needs: whether opacity has a colour. NULL: nothing. */
 const char *fragment_defines(const struct scene *scene);
 /* min_max.c: map -> pyramid, RG32F, S/2 x S/2 x layers with all levels: least and greatest depth. */

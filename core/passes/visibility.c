@@ -109,7 +109,8 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light,
         .vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
         .fragment = "pass_visibility.frag",
         .technique = frame->settings->technique->shader,
-        .defines = {light_defines(&light->emitter, &light->views), technique_defines(frame->settings)}};
+        .defines = {light_defines(&light->emitter, &light->views), technique_defines(frame->settings),
+                    fragment_defines(frame->scene)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)

@@ -20,10 +20,24 @@ struct camera_block {
     float perspective, sample_index, sample_count, padding;
 };
 
-/* The fragments of casters, as lists in order of depth for every texel of a light's views (common_fragments.glsl). */
+/* One level of filtered fragment lists, a list for each texel of each view. */
+#define MAX_FRAGMENT_LEVELS 14
+struct fragment_level {
+    uint32_t first_head;
+    int side;           /* texels */
+    int log2_texel;     /* side of a texel in texels of the map */
+    int stack;          /* 0: of a MIP map, whose texel i covers i .. i + 1; n: the n-th of a stack */
+    int border;         /* of a stack: texels on each side whose filters reach into the map; texel i lies at i - border */
+    float filter_width; /* of the box of equal variance, bilinear interpolation included, in texels of the map */
+};
+
+/* The fragments of casters, as lists in order of depth for every texel of a light's views (common_fragments.glsl), and
+ * levels of them that are filtered ever wider. */
 struct fragment_lists {
     struct gl_buffer heads, fragments;
-    uint32_t count; /* fragments in all lists */
+    uint32_t count; /* fragments in all lists, with the gaps between them */
+    struct fragment_level levels[MAX_FRAGMENT_LEVELS];
+    uint32_t level_count;
 };
 
 /* Textures a technique may make of one light's shadow map. */
@@ -36,6 +50,7 @@ struct frame_light {
     struct gl_texture shadow_map, min_max, planes; /* a layer per view; kept over the samples of a pixel */
     struct gl_texture prefiltered[MAX_PREFILTERED]; /* the same, of the technique's own making */
     int prefiltered_tile; /* of summed-area tables among them: texels along the side of a tile */
+    struct fragment_lists lists;
 };
 
 /* Images of a job; those of the lights follow one another. */

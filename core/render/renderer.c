@@ -127,6 +127,7 @@ static void free_shadow_maps(struct frame *frame, struct frame_light *light) {
     gl_texture_free(frame->gl, &light->planes);
     for (int i = 0; i < MAX_PREFILTERED; i++)
         gl_texture_free(frame->gl, &light->prefiltered[i]);
+    fragment_lists_free(frame->gl, &light->lists);
 }
 
 /* Progress: light by light of every sample. */

@@ -6,10 +6,11 @@
 #include <strings.h>
 
 extern const struct technique technique_hard, technique_pcf, technique_pcss, technique_esm, technique_essm,
-    technique_reference;
+    technique_multilayer, technique_reference;
 
 const struct technique *const techniques[] = {
-    &technique_hard, &technique_pcf, &technique_pcss, &technique_esm, &technique_essm, &technique_reference, NULL};
+    &technique_hard, &technique_pcf,        &technique_pcss,      &technique_esm,
+    &technique_essm, &technique_multilayer, &technique_reference, NULL};
 
 const struct technique *technique_find(const char *id) {
     for (int i = 0; techniques[i]; i++)

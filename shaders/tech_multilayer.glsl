@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Filtered multi-layer shadow maps (Selgrad, Dachsbacher, Meyer, Stamminger 2015). An occluder at some depth is looked up
+// in the level whose filter is as wide as the kernel of that depth.
+#include "common_min_max.glsl"
+#include "common_fragments.glsl"
+
+uniform ivec4 levels[14];        // first head, texels per side, log2 of a texel's width, border of a stack or -1
+uniform float filter_widths[14]; // of the box with the variance of the level's filter, in texels of the map
+uniform int level_count;
+uniform int is_opaque;           // 1: no caster lets light through
+
+const int ADD = 0, MULTIPLY = 1, MAXIMUM = 2;
+
+// What the fragments of one level hide between the depths of two levels.
+struct share {
+    OPACITY opacity;
+    vec2 weight; // of the upper of the two levels: sum over the fragments, each weighted by its opacity; and that of these
+};
+
+float mean(OPACITY opacity) {
+#ifdef COLORED
+    return dot(opacity, vec3(1.0 / 3.0));
+#else
+    return opacity;
+#endif
+}
+
+share nothing() {
+    return share(OPACITY(0.0), vec2(0.0));
+}
+
+// Adds a fragment. upper: how far its kernel's width lies from the width of the lower level to that of the upper one;
+// own: the weight of the level it is in. MULTIPLY weighs a level as a whole, since (1 - w a) (1 - (1 - w) a) > 1 - a.
+void accumulate(inout share s, OPACITY opacity, float upper, float own) {
+    if (ACCUMULATION == ADD)
+        s.opacity += own * opacity;
+    else if (ACCUMULATION == MAXIMUM)
+        s.opacity = max(s.opacity, own * opacity);
+    else
+        s.opacity = 1.0 - (1.0 - s.opacity) * (1.0 - opacity);
+    s.weight += vec2(upper, 1.0) * mean(opacity);
+}
+
+// Opacity between the depths of two levels.
+OPACITY blend(share lower, share upper) {
+    if (ACCUMULATION != MULTIPLY)
+        return min(lower.opacity + upper.opacity, OPACITY(1.0));
+    vec2 weight = lower.weight + upper.weight;
+    return mix(lower.opacity, upper.opacity, weight.y > 0.0 ? weight.x / weight.y : 0.0);
+}
+
+OPACITY combine(OPACITY a, OPACITY b) {
+    if (ACCUMULATION == ADD)
+        return min(a + b, OPACITY(1.0));
+    return ACCUMULATION == MULTIPLY ? 1.0 - (1.0 - a) * (1.0 - b) : max(a, b);
+}
+
+// Side of the square with the kernel's area, in texels per unit of kernel_scale.
+float kernel_side(receiver r) {
+    float area = 4.0 * abs(r.kernel[0].x * r.kernel[1].y - r.kernel[0].y * r.kernel[1].x);
+    return max(sqrt(ELLIPSE == 1 ? 0.25 * PI * area : area), 1e-20);
+}
+
+// Light-space depth at which the kernel is so wide.
+float depth_of_width(receiver r, float side, float width) {
+    float scale = width / side;
+    return is_perspective() ? 1.0 / (scale + 1.0 / r.position.z) : r.position.z - scale;
+}
+
+// Depths between which fragments are looked up in a level, and the depth at which its filter fits.
+struct level_depths {
+    float nearest, own, farthest;
+};
+
+level_depths depths_of_level(receiver r, float side, int level) {
+    level_depths d;
+    d.nearest = level + 1 < level_count ? depth_of_width(r, side, filter_widths[level + 1]) : -3e38;
+    d.own = level + 1 < level_count ? depth_of_width(r, side, filter_widths[level]) : -3e38;
+    d.farthest = level > 0 ? depth_of_width(r, side, filter_widths[level - 1]) : 3e38;
+    if (level == 0)
+        d.own = 3e38;
+    return d;
+}
+
+// Adds the fragments of one texel: nearer to the light than the level's own depth to `lower`, since there this level is
+// the lower of two, farther to `upper`.
+void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, float weight, inout share lower, inout share upper) {
+    ivec4 l = levels[level];
+    if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(l.y))))
+        return;
+    uint head = 2u * uint(l.x + (r.layer * l.y + texel.y) * l.y + texel.x);
+    uint i = heads[head], last = i + heads[head + 1u];
+    vec2 center = (vec2(texel) - (l.w < 0 ? -0.5 : float(l.w))) * exp2(float(l.z)) - 0.5;
+    share near = nothing(), far = nothing();
+    for (; i < last; i++) {
+        float depth = fragment_depth(i);
+        if (depth >= d.farthest || depth >= r.limit)
+            break;
+        if (depth < d.nearest || !is_blocker(r, center, depth))
+            continue;
+        bool is_lower = depth < d.own || level == 0;
+        float width = log2(max(side * kernel_scale(r, depth), 1e-20));
+        int low = is_lower ? level : level - 1;
+        float from = log2(filter_widths[low]), to = log2(filter_widths[min(low + 1, level_count - 1)]);
+        float t = to > from ? clamp((width - from) / (to - from), 0.0, 1.0) : 0.0;
+        if (is_lower)
+            accumulate(near, fragment_opacity(i), t, 1.0 - t);
+        else
+            accumulate(far, fragment_opacity(i), t, t);
+    }
+    lower.opacity += weight * near.opacity;
+    lower.weight += weight * near.weight;
+    upper.opacity += weight * far.opacity;
+    upper.weight += weight * far.weight;
+}
+
+// The four texels around the receiver.
+void look_up_bilinear(receiver r, int level, level_depths d, float side, out share lower, out share upper) {
+    ivec4 l = levels[level];
+    vec2 corner = r.center * exp2(-float(l.z)) + (l.w < 0 ? -0.5 : float(l.w));
+    vec2 f = fract(corner);
+    ivec2 texel = ivec2(floor(corner));
+    lower = upper = nothing();
+    for (int i = 0; i < 4; i++) {
+        ivec2 o = ivec2(i & 1, i >> 1);
+        vec2 w = mix(1.0 - f, f, vec2(o));
+        look_up(r, level, texel + o, d, side, w.x * w.y, lower, upper);
+    }
+}
+
+// The first level whose filter is as wide as the widest kernel of any caster around; -1: nothing can shadow the receiver.
+int last_level(receiver r, float side) {
+    float scale = max(kernel_scale(r, nearest_depth(r)), 0.0);
+    vec2 extent;
+    vec2 depths;
+    for (int i = 0; i < 2; i++) {
+        // Filters reach farther than the kernel they stand for: three texels of a level for two.
+        extent = 1.75 * kernel_extent(r, scale) + 2.0;
+        depths = depth_range(r, extent);
+        scale = clamp(kernel_scale(r, min(depths.x, r.position.z)), 0.0, scale);
+    }
+    if (classify(r, extent, depths) == 1.0)
+        return -1;
+    int level = 0;
+    while (level + 1 < level_count && filter_widths[level] < side * scale)
+        level++;
+    return level;
+}
+
+vec3 technique_visibility(receiver r) {
+    float side = kernel_side(r);
+    int last = last_level(r, side);
+    float facing = abs(is_perspective() ? dot(r.normal, normalize(r.position)) : r.normal.z);
+    float texel = r.texel_size * (is_perspective() ? r.position.z : 1.0) * sqrt(max(1.0 - facing * facing, 0.0));
+    float plane = r.plane;
+    OPACITY opacity = OPACITY(0.0);
+    share lower = nothing();
+    for (int level = 0; level <= last; level++) {
+        // The surfaces of a texel may lie anywhere in its filter, not at its centre, where they are tested.
+        r.plane = plane + (level > 0 ? 0.05 * filter_widths[level] * texel : 0.0);
+        share here, upper;
+        look_up_bilinear(r, level, depths_of_level(r, side, level), side, here, upper);
+        if (level > 0)
+            opacity = combine(opacity, blend(lower, upper));
+        lower = here;
+    }
+    opacity = combine(opacity, blend(lower, nothing()));
+    return vec3(1.0 - opacity);
+}
