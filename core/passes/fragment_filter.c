@@ -58,7 +58,7 @@ static void set_uniforms(const struct gl *gl, GLuint program, const struct fragm
     program_set_int(gl, program, "scale", level->stack > 0 ? 1 : 2);
     program_set_float(gl, program, "tolerance", texel * filter->merge_distance);
     program_set_float(gl, program, "most_tolerance", texel * distance_share);
-    program_set_float(gl, program, "least_tolerance", texel * fminf(filter->merge_distance, LEAST_MERGED));
+    program_set_float(gl, program, "least_tolerance", texel * LEAST_MERGED);
     program_set_int(gl, program, "perspective", view->perspective != 0.0f);
     program_set_int(gl, program, "by_reference", level->log2_texel <= filter->subsampled_levels && level->stack == 0);
 }

@@ -38,6 +38,7 @@ static const struct parameter parameters[] = {
                             "in widths of the merged texel. More is faster; from about 50 on shadows are lost",
                         .unit = "texels",
                         .type = PNB_FLOAT,
+                        .minimum = 0.25,
                         .maximum = 1000,
                         .default_value = 2},
     [LEVELS] = {.name = "levels",
