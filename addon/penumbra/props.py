@@ -95,9 +95,9 @@ def _scene_class(table, technique_classes):
             name="Viewport Samples", default=16, min=1, max=4096,
             description="Anti-aliasing samples per pixel of a viewport at rest"),
         'viewport_latency': IntProperty(
-            name="Latency", default=100, min=10, max=2000,
-            description="Milliseconds within which a viewport shall follow input: its first picture has as many pixels "
-                        "as fit into that time"),
+            name="Latency (ms)", default=100, min=10, max=2000,
+            description="How soon a viewport shall follow input: its first picture has as many pixels as fit into that "
+                        "time"),
         'viewport_view': EnumProperty(
             name="View", description="What rendered viewports show", items=[
                 ('FINAL', "Final", "The picture", 0),

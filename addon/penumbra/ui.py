@@ -123,12 +123,11 @@ class PENUMBRA_PT_statistics(_EnginePanel, Panel):
         self._row(table, "Sum", "", f"{last.milliseconds():.1f}", f"{last.megabytes():.1f}")
 
     def _row(self, layout, name, *numbers):
-        split = layout.split(factor=0.55)
+        split = layout.split(factor=0.46)
         split.label(text=name)
-        row = split.row()
-        row.alignment = 'RIGHT'
+        grid = split.grid_flow(columns=len(numbers), even_columns=True, align=True)
         for number in numbers:
-            cell = row.row()
+            cell = grid.row()
             cell.alignment = 'RIGHT'
             cell.label(text=number)
 
