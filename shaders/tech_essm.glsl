@@ -196,9 +196,9 @@ float search_weight(receiver r, rectangle rect, float depth) {
     return max(overlap.x, 0.0) * max(overlap.y, 0.0) / (extent.x * extent.y);
 }
 
-// Mean light-space depth of the blockers; the receiver's if there are none. The kernel is always split, so that the weights
+// Whether there are blockers, and their mean light-space depth. The kernel is always split, so that the weights
 // of its parts keep far texels apart from near ones.
-float blocker_depth(receiver r, rectangle kernel, float nearest) {
+bool find_blockers(receiver r, rectangle kernel, float nearest, out float depth) {
     const int count = p_subdivision * p_subdivision;
     bool sample_all = must_sample(r, nearest);
     int level = level_of(kernel.high - kernel.low);
@@ -219,7 +219,8 @@ float blocker_depth(receiver r, rectangle kernel, float nearest) {
         if (blockers.x > 0.0)
             sum += search_weight(r, rect, blockers.y) * blockers.x * vec2(blockers.y, 1.0);
     }
-    return sum.y > 0.0 ? sum.x / sum.y : r.position.z;
+    depth = sum.x / max(sum.y, 1e-30);
+    return sum.y > 0.0;
 }
 
 // Visibility in a rectangle.
@@ -346,8 +347,8 @@ vec3 technique_visibility(receiver r) {
     float known = robust && p_min_max == 1 ? classify(r, extent, depths) : 0.5;
     if (known != 0.5)
         return vec3(known);
-    float depth = blocker_depth(r, rectangle(r.center - extent, r.center + extent), depths.x);
-    if (depth >= r.position.z)
+    float depth;
+    if (!find_blockers(r, rectangle(r.center - extent, r.center + extent), depths.x, depth))
         return vec3(1.0);
     scale = max(kernel_scale(r, depth), 0.0);
     return vec3(KERNEL == RECTANGLE ? filter_box(r, scale) : filter_slabs(r, scale));

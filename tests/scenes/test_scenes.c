@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "test_scenes.h"
 
+#include "receiver_scenes.h"
 #include "scene_builder.h"
 #include "translucent_scenes.h"
 
@@ -334,6 +335,9 @@ static const struct test_scene_row rows[] = {
     {{"tall-box", "tall box under a light larger than it", "width of the light, m", 1.2f, 0}, build_tall_box},
     {{"cubes", "many small floating cubes", "number of cubes", 1000, 0}, build_cubes},
     {{"benchmark", "about 40,000 triangles: rings, spheres, columns, boxes", NULL, 0, 0}, build_benchmark},
+    {{"terraces", "lit platforms at every depth: precision of prefiltered maps", "height of the highest, m", 4, 0},
+     build_terraces},
+    {{"grazing-fence", "far fence at a grazing angle: aliasing", "width of a picket, m", 0.05f, 0}, build_grazing_fence},
     {{"glass", "overlapping panes of red, green and blue glass, and a ball", "width of the light, m", 1, 1}, build_glass},
     {{"panes", "stacked panes of glass", "number of panes", 4, 1}, build_panes},
     {{"alpha-fence", "fence by an alpha texture, near to the floor and far from it", "its side, m", 2, 1},
