@@ -35,10 +35,14 @@ vec2 camera_pixel(vec2 fragment) {
     return fragment + camera.image.zw;
 }
 
-// Relative world position of a full-image coordinate and its gbuffer_depth.
-vec3 camera_position(vec2 coordinate, float depth) {
+// Relative world position of a full-image coordinate and its gbuffer_depth, in a sample with this window.
+vec3 camera_position_in(vec4 window, vec2 coordinate, float depth) {
     depth = abs(depth);
-    vec2 p = camera.window.xy + coordinate / camera.image.xy * camera.window.zw;
+    vec2 p = window.xy + coordinate / camera.image.xy * window.zw;
     vec3 across = p.x * camera.axis_x.xyz + p.y * camera.axis_y.xyz;
     return camera.perspective != 0.0 ? depth * (across - camera.axis_z.xyz) : across - depth * camera.axis_z.xyz;
+}
+
+vec3 camera_position(vec2 coordinate, float depth) {
+    return camera_position_in(camera.window, coordinate, depth);
 }

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # check_shaders.sh BUILD_DIR: every shader the library hands to OpenGL, with its defines and includes, is valid for
 # Khronos' reference compiler, which is stricter than drivers are; and every file of shaders/ is in one of them.
-# Mesa writes the sources down while test_door renders with all techniques, lights and materials.
+# Mesa writes the sources down while test_door renders with all techniques, lights and materials, and test_jobs several
+# samples.
 set -eu
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 # shellcheck source=tests/report.sh

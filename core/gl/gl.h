@@ -54,6 +54,7 @@
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                                                                                 \
     X(PFNGLDRAWBUFFERSPROC, DrawBuffers)                                                                               \
     X(PFNGLDRAWELEMENTSINSTANCEDBASEINSTANCEPROC, DrawElementsInstancedBaseInstance)                                   \
+    X(PFNGLDISABLEVERTEXATTRIBARRAYPROC, DisableVertexAttribArray)                                                     \
     X(PFNGLENABLEPROC, Enable)                                                                                         \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray)                                                       \
     X(PFNGLENDQUERYPROC, EndQuery)                                                                                     \
@@ -108,6 +109,7 @@
     X(PFNGLUNIFORMMATRIX3FVPROC, UniformMatrix3fv)                                                                     \
     X(PFNGLUNIFORMMATRIX4FVPROC, UniformMatrix4fv)                                                                     \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                                                                                 \
+    X(PFNGLVERTEXATTRIB1FPROC, VertexAttrib1f)                                                                         \
     X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)                                                               \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)                                                               \
     X(PFNGLVIEWPORTPROC, Viewport)

@@ -30,7 +30,7 @@ void gl_texture_bind(const struct gl *gl, const struct gl_texture *texture, int 
 /* Bytes per texel of the formats the library uses. */
 int gl_format_bytes(GLenum format);
 
-#define MAX_ATTACHMENTS 7
+#define MAX_ATTACHMENTS 6
 
 /* Draws into these textures (layer of an array, or -1 for a plain texture) with a viewport of their size.
  * depth and any color but the first may be NULL. The framebuffer object `fbo` is reused for every pass. INTERNAL if it is incomplete. */

@@ -38,8 +38,12 @@ struct renderer {
     struct gl_texture gbuffer_depth, gbuffer_normal, gbuffer_color, gbuffer_z;
     struct gl_texture gbuffer_emission; /* exists only while something emits */
     struct gl_texture gbuffer_links; /* RG32UI: bits of the lights that do not light a pixel; only with light linking */
+    struct gl_texture key_depth, key_normal; /* the G-buffer's of the key sample, reuse.c */
     struct gl_texture
         visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
+    /* Of the sample being drawn, W x H: sums over the lights, RGBA32F, with and without shadows; and what is drawn
+     * anew, DEPTH_COMPONENT32F, see reuse.c. The last two exist if they are wanted. */
+    struct gl_texture irradiance, unshadowed_irradiance, drawn;
     /* Sums over the samples, RGBA32F, W x H. */
     struct gl_texture combined, shadowed, unshadowed, normal;
     /* Of the shadow catchers alone, if there are any: irradiance with the ambient light's; caught.a = coverage. */
@@ -55,8 +59,10 @@ pnb_result pass_tiles(struct frame *frame);
 pnb_result read_receivers(struct frame *frame);
 /* Tiles, min_max, planes -> tile_visibility_buffer: 0, 1 or undecided, for a technique with `technique_extent`. */
 pnb_result pass_classify(struct frame *frame, const struct frame_light *light);
-/* Draws the tiles, or those that are undecided, over the bound target with the current program. */
-void draw_tiles(struct frame *frame, GLuint program, bool undecided_only);
+/* What a pass over the image is drawn as: one triangle; tiles with their visibility; tiles that are all undecided. */
+enum tiles { TILES_NONE, TILES_CLASSIFIED, TILES_UNDECIDED };
+/* Draws over the bound target with the current program, or only where tiles are undecided. */
+void draw_over(struct frame *frame, GLuint program, enum tiles tiles, bool undecided_only);
 /* shadow_map.c: casters -> map, DEPTH_COMPONENT32F, S x S x a layer per view, linear light-space depth 0..1. What of
  * translucent casters a map keeps: those that hide half of the light or more, or, where samples are averaged, as large
  * a share of their texels as of the light they hide, others in each sample; nothing but what is opaque; everything. */
@@ -113,7 +119,22 @@ pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums,
  * common_planes.glsl. Needs the light's block. */
 pnb_result pass_planes(struct frame *frame, struct frame_light *light);
 /* visibility.c: G-buffer, map, min_max -> renderer.visibility, by the technique; tiles: of undecided ones only. */
-pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, bool tiles);
+pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles);
+/* irradiance.c: makes the sample's sums over the lights; adds to them one light's irradiance times visibility, that of
+ * the tile where it is decided, and to the light's share of the shadow pass. first: replaces what the sums held. */
+pnb_result ensure_irradiance(struct frame *frame);
+pnb_result pass_irradiance(struct frame *frame, const struct frame_light *light, bool first, enum tiles tiles);
+/* Sets the depth test by which a light's passes draw only the pixels that are not reused. */
+void test_drawn(struct frame *frame);
+/* reuse.c: how many samples are lit at every pixel, and whether this one is. */
+uint32_t reuse_key_count(const struct frame *frame);
+bool reuse_is_key(const struct frame *frame);
+/* Keeps the key's G-buffer, before the next sample's is drawn. */
+void reuse_keep_key(struct frame *frame);
+/* Every pixel is drawn, or none. */
+pnb_result reuse_set_drawn(struct frame *frame, bool drawn);
+/* G-buffer, key -> drawn: pixels that see something else than the key. */
+pnb_result pass_reuse(struct frame *frame);
 /* Uploads the light for the shaders of the passes after it. */
 void light_block_upload(struct renderer *renderer, const struct emitter *emitter, const struct light_views *views);
 /* #define lines for the shaders of a pass over one light: its type, outline and number of views as constants, since a
@@ -127,13 +148,12 @@ void bind_technique(struct frame *frame, const struct frame_light *light, GLuint
 void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings);
 /* Binds gbuffer_depth, _normal and _color as the current program's samplers. */
 void bind_gbuffer(struct renderer *renderer, GLuint program);
-/* Sets the current program's `world`: background and ambient radiance; a: 0 = transparent film. */
-void set_world(struct frame *frame, GLuint program);
-/* shading.c: makes the sums; adds to them one light's radiance and irradiance, and with the first one of a sample what
- * needs no light: background, ambient light and normal. light NULL: nothing but that. tiles: visibility is that of the
- * tile where it is decided. */
+/* The texture, or NULL if it was not made. */
+const struct gl_texture *if_made(const struct gl_texture *texture);
+/* shading.c: makes the sums; adds to them what the sample's surfaces reflect of its irradiance, and with the first
+ * group of lights what needs no light: background, ambient light, emission and normal. */
 pnb_result pass_prepare_sums(struct frame *frame);
-pnb_result pass_shading(struct frame *frame, const struct frame_light *light, bool first, bool tiles);
+pnb_result pass_shading(struct frame *frame, bool first);
 /* resolve.c: makes the job's images; fills what is wanted of the first sample alone (depth); sums -> images. */
 pnb_result pass_create_images(struct frame *frame);
 pnb_result pass_resolve_first_sample(struct frame *frame);

@@ -2,8 +2,9 @@
 #include "../memory.h"
 #include "passes.h"
 
-#define TILE       16 /* pixels per side, as in common_tile.glsl */
-#define TILE_BYTES 48 /* of its struct tile */
+#define TILE       16   /* pixels per side, as in common_tile.glsl */
+#define UNDECIDED  0.5f /* visibility, as in pass_classify.comp */
+#define TILE_BYTES 48   /* of its struct tile */
 /* Tiles of the coarse boxes, per side of a group. */
 #define GROUP 8
 
@@ -120,7 +121,8 @@ pnb_result pass_classify(struct frame *frame, const struct frame_light *light) {
     return gl_check(gl, "classification");
 }
 
-void draw_tiles(struct frame *frame, GLuint program, bool undecided_only) {
+/* Tiles as points of an attribute, their visibility; without classification it is the same for all. */
+static void draw_tiles(struct frame *frame, GLuint program, enum tiles tiles, bool undecided_only) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
     int counts[2];
@@ -128,11 +130,23 @@ void draw_tiles(struct frame *frame, GLuint program, bool undecided_only) {
     gl->Uniform2iv(gl->GetUniformLocation(program, "tile_count"), 1, counts);
     program_set_int(gl, program, "undecided_only", undecided_only);
     gl->BindVertexArray(renderer->tile_vertex_array);
-    gl->BindBuffer(GL_ARRAY_BUFFER, renderer->tile_visibility_buffer);
-    gl->EnableVertexAttribArray(0);
-    gl->VertexAttribPointer(0, 1, GL_FLOAT, GL_FALSE, 0, NULL);
+    if (tiles == TILES_CLASSIFIED) {
+        gl->BindBuffer(GL_ARRAY_BUFFER, renderer->tile_visibility_buffer);
+        gl->EnableVertexAttribArray(0);
+        gl->VertexAttribPointer(0, 1, GL_FLOAT, GL_FALSE, 0, NULL);
+    } else {
+        gl->DisableVertexAttribArray(0);
+        gl->VertexAttrib1f(0, UNDECIDED);
+    }
     gl->PointSize((float)TILE);
     gl->Viewport(-(GLint)frame->settings->crop[0], -(GLint)frame->settings->crop[1], counts[0] * TILE,
                  counts[1] * TILE);
     gl->DrawArrays(GL_POINTS, 0, counts[0] * counts[1]);
+}
+
+void draw_over(struct frame *frame, GLuint program, enum tiles tiles, bool undecided_only) {
+    if (tiles == TILES_NONE)
+        draw_screen(frame->renderer);
+    else
+        draw_tiles(frame, program, tiles, undecided_only);
 }

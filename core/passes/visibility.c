@@ -76,7 +76,7 @@ void set_parameters(const struct gl *gl, GLuint program, const struct settings *
 static void upload_taps(struct frame *frame, GLuint program, bool ellipse) {
     const struct gl *gl = frame->gl;
     struct taps taps = {0};
-    frame->settings->technique->taps(frame->settings->parameters, ellipse, frame->sample, frame->settings->samples,
+    frame->settings->technique->taps(frame->settings->parameters, ellipse, frame->sample, reuse_key_count(frame),
                                      &taps);
     gl->BindBuffer(GL_UNIFORM_BUFFER, frame->renderer->tap_buffer);
     gl->BufferData(GL_UNIFORM_BUFFER, sizeof taps.search + sizeof taps.filter, &taps, GL_STREAM_DRAW);
@@ -102,7 +102,7 @@ void bind_technique(struct frame *frame, const struct frame_light *light, GLuint
         technique->bind(frame, light, program, 5);
 }
 
-pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, bool tiles) {
+pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
     const struct program_desc desc = {
@@ -115,17 +115,15 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light,
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
         return result;
-    const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1};
+    const struct gl_target target = {
+        .colors = {&renderer->visibility}, .color_count = 1, .depth = if_made(&renderer->drawn)};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
-    gl->Disable(GL_DEPTH_TEST);
+    test_drawn(frame);
     gl->Disable(GL_BLEND);
     bind_gbuffer(renderer, program);
     bind_technique(frame, light, program);
-    if (tiles)
-        draw_tiles(frame, program, true);
-    else
-        draw_screen(renderer);
+    draw_over(frame, program, tiles, true);
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
     return gl_check(gl, "visibility");
 }

@@ -67,6 +67,8 @@ struct frame {
     int width, height;         /* of the crop */
     uint32_t sample;           /* anti-aliasing sample being drawn */
     uint32_t light;            /* light being drawn */
+    bool reuses;               /* samples use the key sample's irradiance where they can, reuse.c */
+    vec4 key_window;           /* camera.window of the key sample */
     uint32_t sums_samples;     /* in the sums, with the one being drawn */
 
     struct box *receivers;     /* what the camera sees, by tiles; see tiles.c */

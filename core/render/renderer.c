@@ -49,11 +49,24 @@ void renderer_destroy(struct renderer **out) {
                               renderer->box_buffer,    renderer->tile_buffer,  renderer->tile_visibility_buffer,
                               renderer->cursor_buffer};
     gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
-    struct gl_texture *const textures[] = {
-        &renderer->gbuffer_depth, &renderer->gbuffer_normal,   &renderer->gbuffer_color, &renderer->gbuffer_z,
-        &renderer->visibility,    &renderer->combined,         &renderer->shadowed,      &renderer->unshadowed,
-        &renderer->normal,        &renderer->gbuffer_emission, &renderer->caught,        &renderer->uncaught,
-        &renderer->gbuffer_links};
+    struct gl_texture *const textures[] = {&renderer->gbuffer_depth,
+                                           &renderer->gbuffer_normal,
+                                           &renderer->gbuffer_color,
+                                           &renderer->gbuffer_z,
+                                           &renderer->visibility,
+                                           &renderer->combined,
+                                           &renderer->shadowed,
+                                           &renderer->unshadowed,
+                                           &renderer->normal,
+                                           &renderer->gbuffer_emission,
+                                           &renderer->caught,
+                                           &renderer->uncaught,
+                                           &renderer->key_depth,
+                                           &renderer->key_normal,
+                                           &renderer->drawn,
+                                           &renderer->irradiance,
+                                           &renderer->unshadowed_irradiance,
+                                           &renderer->gbuffer_links};
     for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
         gl_texture_free(gl, textures[i]);
     for (int i = 0; i < MAX_LIGHTS; i++)
@@ -143,7 +156,8 @@ static pnb_result report(struct frame *frame, uint32_t light) {
     return job_is_cancelled(job) ? error_set(PNB_ERROR_CANCELLED, "the render was cancelled") : PNB_OK;
 }
 
-static pnb_result draw_light(struct frame *frame, uint32_t index) {
+/* first: of the sample. */
+static pnb_result draw_light(struct frame *frame, uint32_t index, bool first) {
     struct renderer *renderer = frame->renderer;
     const struct frame_light *light = &frame->lights[index];
     frame->light = index;
@@ -156,8 +170,8 @@ static pnb_result draw_light(struct frame *frame, uint32_t index) {
     if (result != PNB_OK)
         return result;
     light_block_upload(renderer, &light->emitter, &light->views);
-    const bool tiles = light->planes.id;
-    if (tiles)
+    const enum tiles tiles = !light->planes.id ? TILES_NONE : reuse_is_key(frame) ? TILES_CLASSIFIED : TILES_UNDECIDED;
+    if (tiles == TILES_CLASSIFIED)
         result = pass_classify(frame, light);
     if (result == PNB_OK && frame->settings->technique->draw)
         result = frame->settings->technique->draw(frame, light);
@@ -166,7 +180,7 @@ static pnb_result draw_light(struct frame *frame, uint32_t index) {
     if (result != PNB_OK)
         return result;
     light_block_upload(renderer, &light->emitter, &light->views);
-    return pass_shading(frame, light, index == 0, tiles);
+    return pass_irradiance(frame, light, first, tiles);
 }
 
 /* Shows what a progressive job has so far; after powers of two, each of which has half the noise of the one before. */
@@ -178,13 +192,34 @@ static pnb_result show_samples(struct frame *frame) {
     return result == PNB_OK ? job_publish(frame->job, done) : result;
 }
 
-/* Maps are kept over the samples, unless each sample has its own part of what is translucent. */
+/* Whether each sample has its own part of what is translucent in its maps. */
+static bool has_sample_maps(const struct frame *frame) {
+    return frame->scene->translucent && map_translucency(frame) == TRANSLUCENCY_STOCHASTIC;
+}
+
 static pnb_result draw_sample_maps(struct frame *frame, uint32_t first, uint32_t last) {
     pnb_result result = PNB_OK;
-    if (frame->sample == 0 || !frame->scene->translucent || map_translucency(frame) != TRANSLUCENCY_STOCHASTIC)
+    if (frame->sample == 0 || !has_sample_maps(frame))
         return PNB_OK;
     for (uint32_t i = first; i < last && result == PNB_OK; i++)
         result = draw_shadow_maps(frame, &frame->lights[i]);
+    return result;
+}
+
+/* The G-buffer of the sample and what follows from it alone. */
+static pnb_result begin_sample(struct frame *frame, bool drawn_already) {
+    const bool key = reuse_is_key(frame);
+    pnb_result result = PNB_OK;
+    reuse_keep_key(frame);
+    camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
+    if (!drawn_already)
+        result = pass_gbuffer(frame, false);
+    if (result == PNB_OK && !drawn_already && key && uses_tiles(frame))
+        result = pass_tiles(frame);
+    if (key)
+        glm_vec4_copy(frame->camera.window, frame->key_window);
+    if (result == PNB_OK)
+        result = key ? reuse_set_drawn(frame, true) : pass_reuse(frame);
     return result;
 }
 
@@ -193,27 +228,35 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
     pnb_result result = PNB_OK;
     for (frame->sample = 0; frame->sample < frame->settings->samples && result == PNB_OK; frame->sample++) {
         frame->sums_samples = frame->sample + 1;
-        camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
-        if (first > 0 || frame->sample > 0) /* find_receivers has drawn the first */
-            result = pass_gbuffer(frame, false);
-        if (result == PNB_OK && (first > 0 || frame->sample > 0) && uses_tiles(frame))
-            result = pass_tiles(frame);
-        if (result == PNB_OK && frame->scene->light_count == 0)
-            result = pass_shading(frame, NULL, true, false);
+        result = begin_sample(frame, first == 0 && frame->sample == 0); /* find_receivers has drawn the first */
         if (result == PNB_OK && first == 0 && frame->sample == 0)
             result = pass_resolve_first_sample(frame);
         if (result == PNB_OK)
             result = draw_sample_maps(frame, first, last);
         for (uint32_t i = first; i < last && result == PNB_OK; i++)
-            result = draw_light(frame, i);
+            result = draw_light(frame, i, i == first);
+        if (result == PNB_OK && reuse_is_key(frame))
+            result = reuse_set_drawn(frame, false);
+        if (result == PNB_OK)
+            result = pass_shading(frame, first == 0);
         if (result == PNB_OK && first == 0 && last == frame->scene->light_count)
             result = show_samples(frame);
     }
     return result;
 }
 
+/* Not where every light's share is wanted, each of which would have to be kept, nor where a sample has maps of its own
+ * or instances have lights of their own, nor for a technique that draws by itself, which is the truth the others are
+ * measured by. */
+static bool can_reuse(const struct frame *frame) {
+    const struct settings *settings = frame->settings;
+    return settings->samples > 1 && frame->scene->light_count > 0 && !settings->technique->draw &&
+           !(settings->passes & PNB_PASS_LIGHT_SHADOWS) && !has_sample_maps(frame) && !frame->scene->light_linked;
+}
+
 static pnb_result draw_frame(struct frame *frame) {
     pnb_result result;
+    frame->reuses = can_reuse(frame);
     /* Memory first: an image that is too large must not be drawn for a minute before it fails. */
     if ((result = pass_create_images(frame)) != PNB_OK || (result = pass_prepare_sums(frame)) != PNB_OK ||
         (result = gpu_scene_update(frame->renderer->scene, frame)) != PNB_OK ||

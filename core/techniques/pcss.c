@@ -30,7 +30,7 @@ static const struct parameter parameters[] = {
     [FILTER_SAMPLES] = {.name = "filter_samples",
                         .label = "Filter Samples",
                         .description = "Points of the penumbra filter; each is one shade of grey (papers: 15 x 15 = 225). "
-                                       "Anti-aliasing samples share them, down to 16 each",
+                                       "Every four anti-aliasing samples share them, down to 16 each",
                         .unit = "",
                         .type = PNB_INT,
                         .minimum = 1,

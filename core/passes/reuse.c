@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Anti-aliasing samples of one surface see much the same light. Every KEY_SAMPLES-th one, the key, is lit at every
+ * pixel; those after it only where they see something else, as the depth buffer `drawn` says: 1 where the passes of a
+ * light draw, 0 where the key's irradiance stays. What was drawn anew is no longer the key's, so a pixel stays drawn
+ * until the next key. */
+#include "passes.h"
+
+#define KEY_SAMPLES 4
+
+uint32_t reuse_key_count(const struct frame *frame) {
+    const uint32_t samples = frame->settings->samples;
+    return frame->reuses ? (samples + KEY_SAMPLES - 1) / KEY_SAMPLES : samples;
+}
+
+bool reuse_is_key(const struct frame *frame) {
+    return !frame->reuses || frame->sample % KEY_SAMPLES == 0;
+}
+
+static void swap_textures(struct gl_texture *a, struct gl_texture *b) {
+    const struct gl_texture kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+void reuse_keep_key(struct frame *frame) {
+    struct renderer *renderer = frame->renderer;
+    if (reuse_is_key(frame) || frame->sample % KEY_SAMPLES != 1)
+        return;
+    swap_textures(&renderer->gbuffer_depth, &renderer->key_depth);
+    swap_textures(&renderer->gbuffer_normal, &renderer->key_normal);
+}
+
+pnb_result reuse_set_drawn(struct frame *frame, bool drawn) {
+    if (!frame->reuses)
+        return PNB_OK;
+    const struct gl_target target = {.depth = &frame->renderer->drawn};
+    pnb_result result = gl_target_bind(frame->gl, frame->renderer->framebuffer, &target);
+    const float depth = drawn ? 1.0f : 0.0f;
+    if (result == PNB_OK) {
+        frame->gl->DepthMask(GL_TRUE);
+        frame->gl->ClearBufferfv(GL_DEPTH, 0, &depth);
+    }
+    return result;
+}
+
+/* pass_reuse.frag: texels. */
+static int texel_widths(const struct frame *frame, vec4 texels[MAX_LIGHTS]) {
+    int count = 0;
+    for (uint32_t i = 0; i < frame->scene->light_count; i++) {
+        const struct frame_light *light = &frame->lights[i];
+        if (light->views.count == 0)
+            continue;
+        float texel = light->views.views[0].texel;
+        for (int view = 1; view < light->views.count; view++)
+            texel = fminf(texel, light->views.views[view].texel);
+        glm_vec4((float *)light->emitter.position, light->views.views[0].perspective != 0.0f ? texel : -texel,
+                 texels[count++]);
+    }
+    return count;
+}
+
+pnb_result pass_reuse(struct frame *frame) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    static const struct program_desc desc = {.vertex = "pass_screen.vert", .fragment = "pass_reuse.frag"};
+    GLuint program;
+    pnb_result result = program_use(&renderer->programs, &desc, &program);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Reuse")) != PNB_OK)
+        return result;
+    const struct gl_target target = {.depth = &renderer->drawn};
+    if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) == PNB_OK) {
+        vec4 texels[MAX_LIGHTS];
+        const int count = texel_widths(frame, texels);
+        gl->Enable(GL_DEPTH_TEST);
+        gl->DepthFunc(GL_ALWAYS);
+        gl->DepthMask(GL_TRUE);
+        bind_gbuffer(renderer, program);
+        gl_texture_bind(gl, &renderer->key_depth, 3);
+        gl_texture_bind(gl, &renderer->key_normal, 4);
+        program_set_int(gl, program, "key_depth", 3);
+        program_set_int(gl, program, "key_normal", 4);
+        program_set_vec4(gl, program, "key_window", frame->key_window);
+        program_set_int(gl, program, "texel_count", count);
+        if (count > 0)
+            gl->Uniform4fv(gl->GetUniformLocation(program, "texels"), count, texels[0]);
+        draw_screen(renderer);
+        gl->DepthFunc(GL_LESS);
+        result = gl_check(gl, "reuse");
+    }
+    timer_end(&renderer->timer, gl_texture_bytes(&renderer->drawn) + gl_texture_bytes(&renderer->key_depth) +
+                                    gl_texture_bytes(&renderer->key_normal));
+    return result;
+}
