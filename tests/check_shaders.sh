@@ -12,6 +12,7 @@ sources=$(mktemp -d)
 trap 'rm -rf "$sources"' EXIT
 
 check "test_door renders" env MESA_SHADER_DUMP_PATH="$sources" "$1/test_door" bad_materials bad_lights parameter_ranges
+check "test_jobs renders" env MESA_SHADER_DUMP_PATH="$sources" "$1/test_jobs"
 for source in "$sources"/*.glsl; do
     case ${source##*/} in
     VS_*) stage=vert ;;
