@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One level of filtered lists from the level below: merges the lists of 2 x 2 texels (Selgrad et al. 2015, figure 3). A
-// list gets as much room as its four sources have together; what merging saves stays unused.
+// list gets as much room as its four sources have together, and what merging saves stays unused; or, where that would be too
+// much, it is merged twice: COUNT to know its length, FILL to store it.
 #include "common_fragments.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -14,8 +15,10 @@ uniform ivec2 pair;       // the sources of texel x: scale * x + pair.x and scal
 uniform int scale;
 uniform float tolerance, most_tolerance, least_tolerance; // metres within which depths are merged, at depth 1 in perspective
 uniform int perspective;
+uniform int phase; // STORE, or COUNT and FILL
 uniform int by_reference; // 1: takes the list of the first source as it is
 
+const int STORE = 0, COUNT = 1, FILL = 2;
 const int ADD = 0, MULTIPLY = 1, MAXIMUM = 2;
 
 // Of two fragments one behind the other.
@@ -64,7 +67,8 @@ void main() {
         return;
     }
     uint total = (a.y - a.x) + (b.y - b.x) + (c.y - c.x) + (d.y - d.x);
-    uint first = total > 0u ? atomicAdd(cursor, total) : 0u, place = first;
+    uint room = phase == STORE ? total : heads[head + 1u];
+    uint first = phase != COUNT && room > 0u ? atomicAdd(cursor, room) : 0u, place = first;
     while (true) {
         float base = min(min(nearest(a), nearest(b)), min(nearest(c), nearest(d)));
         if (base == 3e38)
@@ -77,11 +81,12 @@ void main() {
         take(b, base, last, sum, opacity);
         take(c, base, last, sum, opacity);
         take(d, base, last, sum, opacity);
-        fragment_store(place, base + sum.x / sum.y, 0.25 * opacity);
+        if (phase != COUNT)
+            fragment_store(place, base + sum.x / sum.y, 0.25 * opacity);
         place++;
     }
     heads[head] = first;
     heads[head + 1u] = place - first;
-    if (total > 0u)
+    if (phase != FILL && total > 0u)
         atomicAdd(kept, place - first);
 }

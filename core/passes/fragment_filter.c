@@ -40,7 +40,8 @@ uint32_t fragment_levels(struct fragment_level levels[MAX_FRAGMENT_LEVELS], cons
 /* A level serves receivers that lie about width / light_size x depth behind a blocker. Merging must not reach that far:
  * a receiver's own surface would hide it. This share of it keeps the width of penumbrae, too. */
 #define MOST_MERGED 0.4f
-/* But lists would have no end where an emitter is much larger than its distance: this share of a texel always merges. */
+/* But lists would have no end where an emitter is much larger than its distance: this share of a texel always merges.
+ */
 #define LEAST_MERGED 0.25f
 
 static void set_uniforms(const struct gl *gl, GLuint program, const struct fragment_level *below,
@@ -63,9 +64,12 @@ static void set_uniforms(const struct gl *gl, GLuint program, const struct fragm
     program_set_int(gl, program, "by_reference", level->log2_texel <= filter->subsampled_levels && level->stack == 0);
 }
 
+enum phase { STORE, COUNT, FILL };
+
 /* cursor[0]: end of the room taken, [1]: fragments of the level. All views have texels of nearly the same size. */
 static pnb_result merge_level(struct frame *frame, const struct fragment_level *level, const struct light_views *views,
-                              const struct fragment_filter *filter, struct fragment_lists *lists, uint32_t cursor[2]) {
+                              const struct fragment_filter *filter, enum phase phase, struct fragment_lists *lists,
+                              uint32_t cursor[2]) {
     static const char *const accumulations[] = {"#define ACCUMULATION 0\n", "#define ACCUMULATION 1\n",
                                                 "#define ACCUMULATION 2\n"};
     const struct gl *gl = frame->gl;
@@ -77,14 +81,42 @@ static pnb_result merge_level(struct frame *frame, const struct fragment_level *
         return result;
     fragment_lists_bind(gl, lists);
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, frame->renderer->cursor_buffer);
-    gl->BufferData(GL_SHADER_STORAGE_BUFFER, 2 * sizeof *cursor, (const uint32_t[2]){cursor[0], 0}, GL_STREAM_READ);
+    gl->BufferData(GL_SHADER_STORAGE_BUFFER, 2 * sizeof *cursor, cursor, GL_STREAM_READ);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, frame->renderer->cursor_buffer);
     set_uniforms(gl, program, level - 1, level, filter, &views->views[0]);
+    program_set_int(gl, program, "phase", (int)phase);
     const GLuint groups = (GLuint)(level->side + 7) / 8;
     gl->DispatchCompute(groups, groups, (GLuint)views->count);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, frame->renderer->cursor_buffer);
     gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, 2 * sizeof *cursor, cursor);
     return gl_check(gl, "fragment filter");
+}
+
+static pnb_result add_level(struct frame *frame, const struct fragment_level *level, const struct light_views *views,
+                            const struct fragment_filter *filter, const char *what, struct fragment_lists *lists,
+                            uint32_t cursor[2]) {
+    const struct gl *gl = frame->gl;
+    const uint64_t size = fragment_size(frame->scene), used = size * cursor[0];
+    /* Each fragment below goes to one list of a MIP map, to four of a stack. */
+    const uint64_t most = used + size * (level->stack > 0 ? 4 : 1) * (uint64_t)cursor[1];
+    const uint32_t below = cursor[1];
+    cursor[1] = 0;
+    pnb_result result;
+    if (most <= (uint64_t)gl->max_buffer_size) {
+        result = gl_buffer_ensure(gl, &lists->fragments, most, used, what);
+        if (result == PNB_OK)
+            result = merge_level(frame, level, views, filter, STORE, lists, cursor);
+    } else {
+        result = merge_level(frame, level, views, filter, COUNT, lists, cursor);
+        if (result == PNB_OK)
+            result = gl_buffer_ensure(gl, &lists->fragments, used + size * cursor[1], used, what);
+        if (result == PNB_OK)
+            result = merge_level(frame, level, views, filter, FILL, lists, cursor);
+    }
+    if (cursor[1] == 0) /* by reference */
+        cursor[1] = below;
+    return result;
 }
 
 pnb_result pass_fragment_filter(struct frame *frame, const struct light_views *views,
@@ -101,17 +133,8 @@ pnb_result pass_fragment_filter(struct frame *frame, const struct light_views *v
     if (result != PNB_OK)
         return result;
     uint32_t cursor[2] = {lists->count, lists->count};
-    for (uint32_t i = 1; i < lists->level_count && result == PNB_OK; i++) {
-        /* Each fragment goes to one list of a MIP map, to four of the stack. */
-        const uint64_t most = (lists->levels[i].stack > 0 ? 4 : 1) * (uint64_t)cursor[1],
-                       size = fragment_size(frame->scene);
-        result = gl_buffer_ensure(gl, &lists->fragments, size * (cursor[0] + most), size * cursor[0], what);
-        const uint32_t before = cursor[1];
-        if (result == PNB_OK)
-            result = merge_level(frame, &lists->levels[i], views, filter, lists, cursor);
-        if (cursor[1] == 0) /* by reference */
-            cursor[1] = before;
-    }
+    for (uint32_t i = 1; i < lists->level_count && result == PNB_OK; i++)
+        result = add_level(frame, &lists->levels[i], views, filter, what, lists, cursor);
     timer_end(&frame->renderer->timer, lists->heads.bytes + lists->fragments.bytes);
     lists->count = cursor[0];
     return result;

@@ -13,7 +13,7 @@ from penumbra import compat
 SIDE = 48
 # Root of the mean squared error of a channel's visibility.
 TOLERANCE = 0.05
-TECHNIQUES = ('REFERENCE',)
+TECHNIQUES = ('REFERENCE', 'MULTILAYER')
 
 
 def transparent_material(color, image=None, leaf=None):

@@ -1,0 +1,382 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later
+ * Fragment lists and their filtered levels against lists made and merged here, texel by texel: count, depth, opacity
+ * and order of the base, every level of MIP map and Y-map for each way of accumulating; and what filters are for: one
+ * opaque texel becomes as wide as its level, centred, and no opacity is lost. */
+#include "pass_bench.h"
+
+#include "memory.h"
+
+#define SIDE   64
+#define MOST   256 /* fragments of one texel */
+#define SHEETS 40
+
+/* A horizontal sheet over whole texels of the map: x0 <= x < x1 and so on, at a depth. */
+struct sheet {
+    int x0, y0, x1, y1;
+    float depth, opacity;
+};
+
+struct fragment {
+    float depth, opacity;
+};
+
+struct list {
+    int count;
+    struct fragment fragments[MOST];
+};
+
+struct lists {
+    int side, border;
+    struct list *texels;
+};
+
+struct stage {
+    pnb_mesh *meshes[SHEETS];
+    pnb_instance instances[SHEETS];
+    pnb_material materials[SHEETS];
+    uint32_t slots[SHEETS];
+    struct sheet sheets[SHEETS];
+    uint32_t count;
+};
+
+/* The map covers 0..1 in q, and light space is the world: orthographic. */
+static struct light_views stage_views(void) {
+    struct light_views views = {.count = 1, .single = true};
+    views.views[0] = (struct light_view){
+        .rect = {0, 0, 1, 1}, .near_depth = 1, .far_depth = 9, .perspective = 0, .texel = 1.0f / SIDE};
+    glm_mat4_identity(views.views[0].from_world);
+    return views;
+}
+
+static void add_sheet(struct stage *stage, struct sheet sheet) {
+    const float x0 = (float)sheet.x0 / SIDE, x1 = (float)sheet.x1 / SIDE, y0 = (float)sheet.y0 / SIDE,
+                y1 = (float)sheet.y1 / SIDE, z = sheet.depth;
+    const float positions[] = {x0, y0, z, x1, y0, z, x1, y1, z, x0, y1, z};
+    const uint32_t triangles[] = {0, 1, 2, 0, 2, 3}, i = stage->count++;
+    pnb_mesh_desc desc = PNB_INIT(pnb_mesh_desc);
+    desc.vertex_count = desc.corner_count = 4;
+    desc.triangle_count = 2;
+    desc.positions.data = positions;
+    desc.triangles.data = triangles;
+    CHECK_RESULT(pnb_mesh_create(&desc, &stage->meshes[i]), PNB_OK);
+    stage->instances[i] = (pnb_instance){.struct_size = sizeof(pnb_instance),
+                                         .mesh = stage->meshes[i],
+                                         .first_slot = i,
+                                         .slot_count = 1,
+                                         .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
+    stage->materials[i] = (pnb_material){.struct_size = sizeof(pnb_material), .transparency = 1 - sheet.opacity};
+    stage->slots[i] = i;
+    stage->sheets[i] = sheet;
+}
+
+static void stage_free(struct stage *stage) {
+    for (uint32_t i = 0; i < stage->count; i++)
+        pnb_mesh_destroy(&stage->meshes[i]);
+    *stage = (struct stage){0};
+}
+
+/* ---- The oracle ---- */
+
+static void lists_create(struct lists *lists, int side, int border) {
+    *lists = (struct lists){side, border, calloc((size_t)side * (size_t)side, sizeof *lists->texels)};
+    if (!lists->texels)
+        exit(1);
+}
+
+static int by_depth(const void *a, const void *b) {
+    const struct fragment *first = a, *second = b;
+    return first->depth < second->depth ? -1 : first->depth > second->depth;
+}
+
+static void base_lists(const struct stage *stage, struct lists *lists) {
+    lists_create(lists, SIDE, 0);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct list *list = &lists->texels[i];
+        for (uint32_t s = 0; s < stage->count; s++) {
+            const struct sheet *sheet = &stage->sheets[s];
+            if (i % SIDE >= sheet->x0 && i % SIDE < sheet->x1 && i / SIDE >= sheet->y0 && i / SIDE < sheet->y1)
+                list->fragments[list->count++] = (struct fragment){sheet->depth, sheet->opacity};
+        }
+        qsort(list->fragments, (size_t)list->count, sizeof *list->fragments, by_depth);
+    }
+}
+
+static float accumulate(int mode, float a, float b) {
+    return mode == 0 ? fminf(a + b, 1) : mode == 1 ? 1 - (1 - a) * (1 - b) : fmaxf(a, b);
+}
+
+/* Selgrad et al. 2015, figure 3. */
+static void merge(const struct list *sources[4], float tolerance, int mode, struct list *to) {
+    int next[4] = {0};
+    to->count = 0;
+    for (;;) {
+        float nearest = INFINITY, opacity = 0;
+        for (int s = 0; s < 4; s++)
+            if (next[s] < sources[s]->count)
+                nearest = fminf(nearest, sources[s]->fragments[next[s]].depth);
+        if (isinf(nearest) || to->count == MOST)
+            return;
+        double sum = 0;
+        int merged = 0;
+        for (int s = 0; s < 4; s++) {
+            float own = 0;
+            for (; next[s] < sources[s]->count && sources[s]->fragments[next[s]].depth <= nearest + tolerance;
+                 next[s]++) {
+                sum += (double)sources[s]->fragments[next[s]].depth;
+                own = accumulate(mode, own, sources[s]->fragments[next[s]].opacity);
+                merged++;
+            }
+            opacity += own / 4;
+        }
+        to->fragments[to->count++] = (struct fragment){(float)(sum / merged), opacity};
+    }
+}
+
+static const struct list *list_at(const struct lists *lists, int x, int y) {
+    static const struct list empty;
+    const bool inside = x >= 0 && y >= 0 && x < lists->side && y < lists->side;
+    return inside ? &lists->texels[y * lists->side + x] : &empty;
+}
+
+/* The texels of a level that texel `x` merges: two of a MIP map, or of a stack those on both sides of its place. */
+static void sources_of(const struct fragment_level *level, const struct lists *below, int x, int sources[2]) {
+    const int place = x - level->border;
+    if (level->stack == 0) {
+        sources[0] = 2 * x;
+        sources[1] = 2 * x + 1;
+    } else if (level->stack == 1) {
+        sources[0] = place - 1;
+        sources[1] = place;
+    } else {
+        sources[0] = place - (1 << (level->stack - 2)) + below->border;
+        sources[1] = place + (1 << (level->stack - 2)) + below->border;
+    }
+}
+
+static void merge_level(const struct fragment_level *level, const struct lists *below, float tolerance, int mode,
+                        struct lists *lists) {
+    lists_create(lists, level->side, level->border);
+    for (int i = 0; i < level->side * level->side; i++) {
+        int x[2], y[2];
+        sources_of(level, below, i % level->side, x);
+        sources_of(level, below, i / level->side, y);
+        const struct list *sources[4] = {list_at(below, x[0], y[0]), list_at(below, x[1], y[0]),
+                                         list_at(below, x[0], y[1]), list_at(below, x[1], y[1])};
+        merge(sources, tolerance, mode, &lists->texels[i]);
+    }
+}
+
+/* ---- What OpenGL made ---- */
+
+static void read_level(const struct gl *gl, const struct fragment_lists *from, uint32_t index, struct lists *to) {
+    const struct fragment_level *level = &from->levels[index];
+    const size_t texels = (size_t)level->side * (size_t)level->side;
+    uint32_t *heads = malloc(texels * 8);
+    struct fragment *fragments = malloc(from->count * sizeof *fragments + 1);
+    lists_create(to, level->side, level->border);
+    if (!heads || !fragments)
+        exit(1);
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, from->heads.id);
+    gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 8 * (GLintptr)level->first_head, (GLsizeiptr)(8 * texels), heads);
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, from->fragments.id);
+    gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(from->count * sizeof *fragments), fragments);
+    for (size_t i = 0; i < texels; i++) {
+        const uint32_t first = heads[2 * i], count = heads[2 * i + 1];
+        if (count > MOST || (uint64_t)first + count > from->count) {
+            CHECK(false);
+            continue;
+        }
+        to->texels[i].count = (int)count;
+        memcpy(to->texels[i].fragments, fragments + first, count * sizeof *fragments);
+    }
+    free(heads);
+    free(fragments);
+}
+
+/* Number of lists that are not the expected ones. */
+static int differences(const struct lists *expected, const struct lists *found) {
+    int wrong = 0;
+    for (int i = 0; i < expected->side * expected->side; i++) {
+        const struct list *a = &expected->texels[i], *b = &found->texels[i];
+        bool good = a->count == b->count;
+        for (int f = 0; good && f < a->count; f++)
+            /* Sums of single precision: depths to a part in a million, opacities of up to 4^6 texels likewise. */
+            good = fabsf(a->fragments[f].depth - b->fragments[f].depth) <= 1e-5f &&
+                   fabsf(a->fragments[f].opacity - b->fragments[f].opacity) <= 1e-6f;
+        wrong += !good;
+    }
+    return wrong;
+}
+
+static double total_opacity(const struct lists *lists) {
+    double sum = 0;
+    for (int i = 0; i < lists->side * lists->side; i++)
+        for (int f = 0; f < lists->texels[i].count; f++)
+            sum += (double)lists->texels[i].fragments[f].opacity;
+    return sum;
+}
+
+/* ---- Tests ---- */
+
+static bool make_lists(struct bench *bench, const struct stage *stage, const struct fragment_filter *filter,
+                       struct fragment_lists *lists) {
+    const pnb_scene from = {.struct_size = sizeof from,
+                            .instance_count = stage->count,
+                            .material_count = stage->count,
+                            .slot_count = stage->count,
+                            .instances = stage->instances,
+                            .materials = stage->materials,
+                            .slots = stage->slots,
+                            .camera = {.struct_size = sizeof(pnb_camera)}};
+    struct scene *scene;
+    if (!CHECK_RESULT(scene_create(&from, &bench->messages, &scene), PNB_OK))
+        return false;
+    bench->frame.scene = scene;
+    bench->settings.shadow_map_size = SIDE;
+    const struct light_views views = stage_views();
+    struct gl_texture map = {0};
+    CHECK_RESULT(gpu_scene_update(bench->renderer->scene, &bench->frame), PNB_OK);
+    CHECK_RESULT(pass_shadow_map(&bench->frame, &views, TRANSLUCENCY_ANY, &map), PNB_OK);
+    bool good = CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, CASTERS_ALL, 0, &map, "test", lists), PNB_OK) &&
+                CHECK_RESULT(pass_fragment_filter(&bench->frame, &views, filter, SIDE, "test", lists), PNB_OK);
+    gl_texture_free(&bench->backend.gl, &map);
+    memory_free(bench->frame.casters);
+    bench->frame.casters = NULL;
+    bench->frame.caster_count = 0;
+    scene_destroy(&scene);
+    return good;
+}
+
+static uint32_t random_below(uint32_t *state, uint32_t end) {
+    return next_random(state) % end;
+}
+
+static void random_stage(struct stage *stage) {
+    uint32_t random = 5;
+    for (int i = 0; i < SHEETS; i++) {
+        const int x = (int)random_below(&random, SIDE - 1), y = (int)random_below(&random, SIDE - 1);
+        const int width = 1 + (int)random_below(&random, 24), height = 1 + (int)random_below(&random, 24);
+        add_sheet(stage,
+                  (struct sheet){x, y, x + width < SIDE ? x + width : SIDE, y + height < SIDE ? y + height : SIDE,
+                                 1.5f + 0.171f * (float)i, i % 3 == 0 ? 1.0f : 0.1f + 0.02f * (float)i});
+    }
+}
+
+static void levels_match(struct bench *bench, int stack_side, int mode) {
+    struct stage stage = {0};
+    struct fragment_lists lists = {0};
+    random_stage(&stage);
+    const struct fragment_filter filter = {
+        .level_count = 6, .stack_side = stack_side, .accumulation = mode, .merge_distance = 2, .light_size = 1e-3f};
+    struct lists below, expected, found;
+    base_lists(&stage, &below);
+    if (make_lists(bench, &stage, &filter, &lists)) {
+        read_level(&bench->backend.gl, &lists, 0, &found);
+        CHECK_INT(differences(&below, &found), 0);
+        free(found.texels);
+        for (uint32_t i = 1; i < lists.level_count; i++) {
+            const struct fragment_level *level = &lists.levels[i];
+            const float tolerance = 2.0f / SIDE * (float)(1 << (level->log2_texel + level->stack));
+            merge_level(level, &below, tolerance, mode, &expected);
+            read_level(&bench->backend.gl, &lists, i, &found);
+            if (!CHECK_INT(differences(&expected, &found), 0))
+                printf("  level %u of %u, side %d, stack %d, accumulation %d\n", i, lists.level_count, level->side,
+                       level->stack, mode);
+            free(below.texels);
+            free(found.texels);
+            below = expected;
+        }
+    }
+    printf("stack from %d, accumulation %d: %u levels as merged here\n", stack_side, mode, lists.level_count);
+    free(below.texels);
+    fragment_lists_free(&bench->backend.gl, &lists);
+    stage_free(&stage);
+}
+
+/* One opaque texel; its opacity over all texels of a level, and where they are. */
+static void one_texel(struct bench *bench, int stack_side) {
+    struct stage stage = {0};
+    struct fragment_lists lists = {0};
+    add_sheet(&stage, (struct sheet){24, 40, 25, 41, 4, 1});
+    const struct fragment_filter filter = {
+        .level_count = 7, .stack_side = stack_side, .accumulation = 1, .merge_distance = 2, .light_size = 1e-3f};
+    if (!make_lists(bench, &stage, &filter, &lists))
+        return;
+    for (uint32_t i = 0; i < lists.level_count; i++) {
+        const struct fragment_level *level = &lists.levels[i];
+        const double texel = 1 << level->log2_texel;
+        struct lists found;
+        read_level(&bench->backend.gl, &lists, i, &found);
+        double center[2] = {0, 0}, sum = 0;
+        int least = level->side, greatest = -1;
+        for (int t = 0; t < level->side * level->side; t++)
+            for (int f = 0; f < found.texels[t].count; f++) {
+                const double opacity = (double)found.texels[t].fragments[f].opacity;
+                const int x = t % level->side, y = t / level->side;
+                center[0] += opacity * (x - level->border + (level->stack ? 0.0 : 0.5)) * texel;
+                center[1] += opacity * (y - level->border + (level->stack ? 0.0 : 0.5)) * texel;
+                sum += opacity;
+                least = x < least ? x : least;
+                greatest = x > greatest ? x : greatest;
+            }
+        const int width = level->stack ? 1 << level->stack : 1;
+        CHECK_INT(greatest - least + 1, width);
+        /* Opacity times area is that of one texel. */
+        CHECK_NEAR(sum * texel * texel, 1, 1e-6);
+        /* The texel lies anywhere in the texel of the MIP map that holds it, the stack is symmetric about that one. */
+        CHECK_AT_MOST(fabs(center[0] / sum - 24.5), texel / 2);
+        CHECK_AT_MOST(fabs(center[1] / sum - 40.5), texel / 2);
+        const double cell = floor(24 / texel) * texel + texel / 2;
+        CHECK_NEAR(center[0] / sum, cell, 1e-6);
+        free(found.texels);
+    }
+    printf("one texel, stack from %d: %u levels centred and as wide as they should be\n", stack_side,
+           lists.level_count);
+    fragment_lists_free(&bench->backend.gl, &lists);
+    stage_free(&stage);
+}
+
+/* Sheets side by side: a level's opacity times area stays, whatever is merged. */
+static void opacity_is_conserved(struct bench *bench, int mode) {
+    struct stage stage = {0};
+    struct fragment_lists lists = {0};
+    for (int i = 0; i < 32; i++)
+        add_sheet(&stage,
+                  (struct sheet){i, 2 * (i % 7), i + 1, SIDE - i, 2 + 0.1f * (float)i, 0.5f + 0.01f * (float)i});
+    const struct fragment_filter filter = {
+        .level_count = 7, .stack_side = 0, .accumulation = mode, .merge_distance = 20, .light_size = 1e-3f};
+    if (!make_lists(bench, &stage, &filter, &lists))
+        return;
+    double base = 0, worst = 0;
+    for (uint32_t i = 0; i < lists.level_count; i++) {
+        struct lists found;
+        read_level(&bench->backend.gl, &lists, i, &found);
+        const double total = total_opacity(&found) * (double)(1 << (2 * lists.levels[i].log2_texel));
+        base = i == 0 ? total : base;
+        /* Adding conserves all; the others only while no list holds two of the merged fragments, in the first level. */
+        if (mode == 0 || i <= 1)
+            worst = fmax(worst, fabs(total / base - 1));
+        free(found.texels);
+    }
+    printf("accumulation %d: opacity conserved to %.2g\n", mode, worst);
+    CHECK(base > 100);
+    CHECK_AT_MOST(worst, 1e-5);
+    fragment_lists_free(&bench->backend.gl, &lists);
+    stage_free(&stage);
+}
+
+int main(void) {
+    quality_open();
+    static struct bench bench;
+    if (bench_open(&bench)) {
+        for (int mode = 0; mode < 3; mode++) {
+            levels_match(&bench, 0, mode);
+            levels_match(&bench, 16, mode);
+            opacity_is_conserved(&bench, mode);
+        }
+        one_texel(&bench, 0);
+        one_texel(&bench, 16);
+        bench_close(&bench);
+    }
+    return quality_close();
+}
