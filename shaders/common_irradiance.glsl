@@ -56,26 +56,29 @@ float area_integral(vec3 center, vec3 u, vec3 v) {
 }
 
 #ifdef SPREAD
-// By midpoints over the part of the emitter that shines this way: no closed form is known.
+// By midpoints over the part of the emitter that shines this way, row by row: no closed form is known.
 float area_irradiance(vec3 position, vec3 normal) {
     vec3 to_light = light.position.xyz - position;
     float facing = -dot(to_light, light.frame_z.xyz);
     vec3 u = light.half_u.xyz, v = light.half_v.xyz;
     vec2 foot = -vec2(dot(to_light, u) / dot(u, u), dot(to_light, v) / dot(v, v)); // of the point, in half axes
     vec2 reach = facing * light.cone.x * vec2(inversesqrt(dot(u, u)), inversesqrt(dot(v, v)));
-    vec2 low = max(foot - reach, -1.0), high = min(foot + reach, 1.0);
-    if (facing <= 0.0 || low.x >= high.x || low.y >= high.y)
+    float low = max(foot.y - reach.y, -1.0), high = min(foot.y + reach.y, 1.0);
+    if (facing <= 0.0 || low >= high)
         return 0.0;
     const int STEPS = 16;
     float sum = 0.0;
-    for (int i = 0; i < STEPS * STEPS; i++) {
-        vec2 s = mix(low, high, (vec2(i % STEPS, i / STEPS) + 0.5) / float(STEPS));
-        vec3 l = to_light + s.x * u + s.y * v;
-        float d2 = dot(l, l), inside = ELLIPSE == 0 || dot(s, s) <= 1.0 ? 1.0 : 0.0;
-        sum += inside * light_spread(l) * max(dot(normal, l), 0.0) * facing / (d2 * d2);
+    for (int i = 0; i < STEPS; i++) {
+        float y = mix(low, high, (float(i) + 0.5) / float(STEPS)), across = (y - foot.y) / reach.y;
+        float lit = reach.x * sqrt(max(1.0 - across * across, 0.0)), outline = ELLIPSE == 1 ? sqrt(1.0 - y * y) : 1.0;
+        float left = max(foot.x - lit, -outline), right = min(foot.x + lit, outline);
+        for (int j = 0; j < STEPS && left < right; j++) {
+            vec3 l = to_light + mix(left, right, (float(j) + 0.5) / float(STEPS)) * u + y * v;
+            float d2 = dot(l, l);
+            sum += (right - left) * light_spread(l) * max(dot(normal, l), 0.0) * facing / (d2 * d2);
+        }
     }
-    vec2 extent = (high - low) / float(STEPS);
-    return sum * extent.x * extent.y * length(cross(u, v));
+    return sum * (high - low) / float(STEPS * STEPS) * length(cross(u, v));
 }
 #else
 float area_irradiance(vec3 position, vec3 normal) {
