@@ -35,7 +35,7 @@ def _color(light, name, warnings):
 
 def _point(target, light, matrix, name, warnings):
     target.radius = light.shadow_soft_size
-    area = 1.0 if compat.light_is_normalized(light) else pi * light.shadow_soft_size ** 2
+    area = 1.0 if compat.light_is_normalized(light) else 4.0 * pi * light.shadow_soft_size ** 2
     return area / (4.0 * pi)
 
 
