@@ -91,6 +91,10 @@ def paint(stage, material):
     stage.floor.data.materials.append(material)
 
 
+# Pictures of squares are full of outlines: of 36 samples a pixel is half of one off on each, a tenth of the pixels here.
+SQUARES = 0.035
+
+
 @row('materials')
 def principled_value(stage):
     """Principled: base colour."""
@@ -192,7 +196,7 @@ def add_shaders(stage):
     stage.for_cycles = lambda: _lights_nothing(nodes.material)
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def image_srgb(stage):
     """A byte image in sRGB."""
     textured(stage, picture())
@@ -204,13 +208,14 @@ def image_linear(stage):
     textured(stage, picture(float_buffer=True), interpolation='Linear')
 
 
-@row('materials')
+# Half of the floor is black: what is left counts double.
+@row('materials', light=2 * SQUARES)
 def image_clipped(stage):
     """Beyond its edges the image is black."""
     _beyond(stage, 'CLIP')
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def image_extended(stage):
     """Beyond its edges the image goes on with its last texels."""
     _beyond(stage, 'EXTEND')
@@ -226,26 +231,26 @@ def _beyond(stage, extension):
     textured(stage, picture(), change=change, extension=extension)
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def image_non_color(stage):
     """A byte image that is data."""
     textured(stage, picture(color_space='Non-Color'))
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def image_float(stage):
     """A float image in linear space."""
     textured(stage, picture(float_buffer=True))
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def image_other_space(stage):
     """A byte image in another colour space than sRGB, with other primaries."""
     spaces = bpy.types.ColorManagedInputColorspaceSettings.bl_rna.properties['name'].enum_items.keys()
     textured(stage, picture(color_space=next(name for name in ('Display P3', 'Linear ACEScg') if name in spaces)))
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def image_packed(stage):
     """An image packed into the .blend, whose file is gone."""
     image = picture()
@@ -265,7 +270,7 @@ def image_missing(stage):
     textured(stage, image)
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def image_udim(stage):
     """A tiled image: the first tile."""
     tile = picture()
@@ -301,7 +306,7 @@ def image_emission(stage):
     stage.for_cycles = lambda: _lights_nothing(nodes.material)
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def uv_map_node(stage):
     """A UV Map node names another map than the active one."""
     def change(nodes, texture):
@@ -313,7 +318,7 @@ def uv_map_node(stage):
         unwrap(ob, "Other", scale=0.5, turn=True)
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def two_uv_maps(stage):
     """Two materials of one mesh with a map each."""
     def change(nodes, texture):
@@ -333,7 +338,7 @@ def two_uv_maps(stage):
         unwrap(ob, "Other", scale=0.5, turn=True)
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def mapping_node(stage):
     """A Mapping node moves, turns and scales the picture."""
     def change(nodes, texture):
@@ -346,7 +351,7 @@ def mapping_node(stage):
     textured(stage, picture(), change=change)
 
 
-@row('materials')
+@row('materials', light=SQUARES)
 def mapping_as_texture(stage):
     """A Mapping node of the kind Texture: inverse."""
     def change(nodes, texture):
@@ -384,7 +389,7 @@ def _vertex_colors(stage, domain, kind, node):
             element.color = (0.9, 0.2, 0.1, 1) if index % 2 else (0.1, 0.5, 0.8, 1)
 
 
-@row('materials')
+@row('materials', until=(5, 0))
 def display_colour(stage):
     """`use_nodes` off: the colour of the viewport. From Blender 5 on nodes are always used."""
     material = bpy.data.materials.new("Plain")
@@ -477,7 +482,7 @@ def world_colour(stage):
     _world(stage, build)
 
 
-@row('materials')
+@row('materials', until=(5, 0))
 def world_without_nodes(stage):
     """`use_nodes` of the world off: its own colour. From Blender 5 on nodes are always used."""
     _world(stage, lambda _tree, _background: None)
