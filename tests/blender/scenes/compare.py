@@ -2,7 +2,7 @@
 """Runs inside Blender: renders every row with Cycles and with Penumbra and writes the numbers and pictures.
 
 After `--`: the folder of the results and names of rows (none: all). Cycles' pictures are kept there from run to run, by the
-text of the row's file."""
+text of the row and of its stage: delete them after changes of functions that rows share."""
 
 import hashlib
 import json
@@ -131,7 +131,7 @@ def measure(ours, theirs, row):
 
 def write_png(path, picture, difference=None):
     """A picture over grey; or four times the absolute difference of two."""
-    letters = [letter for letter in picture if letter != 'A']
+    letters = sorted((letter for letter in picture if letter != 'A'), key='RGBXYZ'.index)
     width, height, _values = picture[letters[0]]
     pixels = array('f', bytes(16 * width * height))
     for index in range(width * height):
@@ -178,6 +178,18 @@ def compare(row, folder):
     return record
 
 
+def write_results(path, records):
+    """Rows that were not rendered this time keep the results they have."""
+    rows = {}
+    if os.path.exists(path):
+        with open(path, encoding='utf-8') as file:
+            rows = {record['name']: record for record in json.load(file)['rows']}
+    rows.update((record['name'], record) for record in records)
+    order = [row.name for row in ROWS if row.fits(bpy.app.version) and row.name in rows]
+    with open(path, 'w', encoding='utf-8') as file:
+        json.dump({'version': bpy.app.version_string, 'rows': [rows[name] for name in order]}, file, indent=1)
+
+
 def main():
     folder, *names = sys.argv[sys.argv.index('--') + 1:]
     unknown = set(names) - {row.name for row in ROWS}
@@ -195,8 +207,7 @@ def main():
                             for name, (value, limit) in record['errors'].items())
         print('ROW', 'ok    ' if record['passed'] else 'FAILED', row.group, row.name, numbers,
               record.get('failure', ''), flush=True)
-    with open(os.path.join(folder, 'results.json'), 'w', encoding='utf-8') as file:
-        json.dump({'version': bpy.app.version_string, 'rows': records}, file, indent=1)
+    write_results(os.path.join(folder, 'results.json'), records)
     failed = sum(not record['passed'] for record in records)
     print(f"{len(records) - failed} passed, {failed} failed", flush=True)
     sys.exit(failed > 0)
