@@ -20,6 +20,8 @@ _REST = 0.12
 _WAIT_MS = 25
 # Of the region's width and height, for the first picture.
 _SCALES = (1.0, 0.7, 0.5, 0.35, 0.25)
+# First pictures for which a scale that was too slow is not tried again.
+_MEMORY = 40
 
 # What a run makes: a quick picture, all samples, all samples by the reference.
 _FIRST, _SAMPLES, _REFERENCE = range(3)
@@ -162,7 +164,7 @@ class Viewport:
             return
         kind, self._next = self._next[0], None
         self._run = Run(kind, self._wanted, self._exported, scene, self._speed)
-        if kind == _FIRST and self._speed.expected(self._run.scale) <= _WAIT_MS:
+        if kind == _FIRST and self._speed.expected(self._run.share) <= _WAIT_MS:
             self._run.job.wait(_WAIT_MS)
         _wake()
 
@@ -175,7 +177,7 @@ class Viewport:
             samples = run.job.samples_done()
             if samples > run.samples_taken:
                 if run.kind == _FIRST:
-                    self._speed.add(run.scale, run.elapsed_ms())
+                    self._speed.add(run.technique, run.share, run.elapsed_ms())
                 self._picture = run.wanted.image.picture(run)
         except capi.Error as error:
             self._stop_run()
@@ -254,7 +256,8 @@ class Run:
     def __init__(self, kind, wanted, exported, scene, speed):
         self.kind, self.wanted = kind, wanted
         options = scene.penumbra
-        self.scale = wanted.pixel_scale * (speed.choose(options.viewport_latency) if kind == _FIRST else 1.0)
+        self.share = speed.choose(options.viewport_latency) if kind == _FIRST else 1.0
+        self.scale = wanted.pixel_scale * self.share
         self.samples_taken = 0
         self._seen = 0
         self._options = options.technique, options.use_refine, options.viewport_samples
@@ -289,7 +292,7 @@ class Run:
 
     def following_kind(self):
         technique, refine, samples = self._options
-        if self.kind == _FIRST and (samples > 1 or self.scale < 1.0):
+        if self.kind == _FIRST and (samples > 1 or self.share < 1.0):
             return _SAMPLES
         if self.kind != _REFERENCE and refine and technique != 'REFERENCE':
             return _REFERENCE
@@ -341,22 +344,28 @@ class Speed:
     """How long first pictures take at each scale, to choose the largest that meets the latency."""
 
     def __init__(self):
-        self._ms = {}
+        self._measured = {}     # scale: (milliseconds, when, in pictures)
+        self._last = None       # scale
+        self._count = 0
+        self._known = set()     # techniques whose shaders are compiled
 
-    def add(self, scale, ms):
-        """What was measured at other scales changed by the same ratio."""
-        ratio = ms / self._ms[scale] if scale in self._ms else 1.0
-        self._ms = {other: value * ratio for other, value in self._ms.items()}
-        self._ms[scale] = ms
+    def add(self, technique, scale, ms):
+        if technique not in self._known:
+            self._known.add(technique)
+            return
+        self._count += 1
+        self._measured[scale] = ms, self._count
+        self._last = scale
 
     def expected(self, scale):
-        if not self._ms:
-            return float('inf')
-        nearest = min(self._ms, key=lambda known: abs(known - scale))
-        return self._ms[nearest] * (scale / nearest) ** 2
+        """As measured lately, else in proportion to the last picture: part of its time does not depend on size."""
+        ms, when = self._measured.get(scale, (0.0, -_MEMORY))
+        if self._count - when < _MEMORY:
+            return ms
+        return self._measured[self._last][0] * scale / self._last if self._last else float('inf')
 
     def choose(self, latency_ms):
-        if not self._ms:
+        if self._last is None:
             return _SCALES[2]
         return next((scale for scale in _SCALES if self.expected(scale) <= latency_ms), _SCALES[-1])
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Random edits of a scene that a viewport shows, with undo and F12 in between: no crash, no exception, no growth, and in
-the end the picture of a new viewport. Takes minutes, so it is no part of the tests:
+"""Random edits of a scene that a viewport shows, with undo and F12 in between: no crash, no exception, no growth, and
+in the end the picture of a new viewport. Takes minutes, so it is no part of the tests:
 
     sh tests/blender/run.sh build --window soak
     SOAK_EDITS=200 SOAK_SEED=7 sh tests/blender/run.sh build --window soak
@@ -60,12 +60,15 @@ class Soak(ViewportTest):
         elif self.random.random() < 0.3:
             add_light("Light", self.random.choice(['AREA', 'POINT', 'SPOT', 'SUN']), self.place(3.0), energy=20.0)
         else:
-            add_cube(location=self.place(0.5)).data.materials.append(white_material())
+            material = bpy.data.materials.get("White") or white_material()
+            add_cube(location=self.place(0.5)).data.materials.append(material)
 
     def delete(self):
         objects = self.objects('MESH') + self.objects('LIGHT')
         if objects:
-            bpy.data.objects.remove(self.random.choice(objects))
+            ob = self.random.choice(objects)
+            owner = bpy.data.meshes if ob.type == 'MESH' else bpy.data.lights
+            owner.remove(ob.data)   # and the object with it: unused data would be memory that grows
 
     def move(self):
         for ob in self.objects('MESH')[:1] + self.objects('LIGHT')[:1]:
@@ -134,9 +137,9 @@ class Soak(ViewportTest):
                 bpy.ops.object.mode_set(mode='OBJECT')
 
     def edit(self):
-        action = self.random.choice([self.add_object, self.delete, self.move, self.move, self.hide, self.resize, self.orbit,
-                                     self.switch_mode, self.switch_shading, self.switch_technique, self.undo, self.undo,
-                                     self.redo, self.next_frame])
+        action = self.random.choice([self.add_object, self.delete, self.move, self.move, self.hide, self.resize,
+                                     self.orbit, self.switch_mode, self.switch_shading, self.switch_technique,
+                                     self.undo, self.undo, self.redo, self.next_frame])
         if action in (self.delete, self.add_object):
             self.object_mode()
         action()

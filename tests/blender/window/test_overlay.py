@@ -22,8 +22,9 @@ class Overlay(ViewportTest):
         space = self.space()
         # Overlays are on, but none except ours.
         space.overlay.show_overlays = True
-        for name in ('show_floor', 'show_axis_x', 'show_axis_y', 'show_text', 'show_stats', 'show_cursor', 'show_extras',
-                     'show_outline_selected', 'show_object_origins', 'show_ortho_grid', 'show_relationship_lines'):
+        for name in ('show_floor', 'show_axis_x', 'show_axis_y', 'show_text', 'show_stats', 'show_cursor',
+                     'show_extras', 'show_outline_selected', 'show_object_origins', 'show_ortho_grid',
+                     'show_relationship_lines'):
             setattr(space.overlay, name, False)
 
     def shadow(self):

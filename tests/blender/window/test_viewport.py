@@ -27,7 +27,7 @@ class Edits(ViewportTest):
 
     def setUp(self):
         super().setUp()
-        self.scene.render.preview_pixel_size = '2'      # faster
+        self.scene.render.preview_pixel_size = '4'      # faster
         self.still_life()
         self.look()
         self.before = None
