@@ -281,6 +281,59 @@ static void rectangles_are_exact(struct bench *bench, int side, int tile, bool f
     table_free(bench, &c);
 }
 
+/* ---- A fully lit plane ---- */
+
+/* Kernels of 4 texels on a map whose depth is the same everywhere; every other one lies across the border of a tile. */
+static void plane_is_even(struct bench *bench, int tile, bool floats, double allowed) {
+    struct table_case c = {.side = 4096, .tile = tile, .floats = floats};
+    const size_t count = (size_t)c.side * (size_t)c.side;
+    static float rectangles[RECTANGLES][4], results[RECTANGLES][4];
+    uint32_t random = 5;
+    c.depths = malloc(count * sizeof *c.depths);
+    for (size_t i = 0; i < count; i++)
+        c.depths[i] = 0.7f;
+    for (int i = 0; i < RECTANGLES; i++)
+        for (int axis = 0; axis < 2; axis++) {
+            const float at = 4090 * (float)next_random(&random) / 16777216.0f;
+            rectangles[i][axis] = i % 2 && at > 64 ? floorf(at / 64) * 64 - 1.3f : at;
+            rectangles[i][2 + axis] = rectangles[i][axis] + 4;
+        }
+    memcpy(results, rectangles, sizeof results);
+    if (table_make(bench, &c)) {
+        look_up(&bench->backend.gl, &c, results);
+        double squares = 0, seam = 0;
+        for (int i = 0; i < RECTANGLES; i++) {
+            const float *r = rectangles[i];
+            const double area = ((double)r[2] - (double)r[0]) * ((double)r[3] - (double)r[1]);
+            const double error = (double)results[i][0] / area / (floats ? 1 : (double)SCALE) / (double)0.7f - 1;
+            squares += error * error;
+            seam = fmax(seam, i % 2 ? fabs(error) : 0);
+        }
+        printf("lit plane, 4096 x 4096, %s in tiles of %4d: standard deviation %.1e, across borders %.1e at most\n",
+               floats ? "floats" : "integers", tile, sqrt(squares / RECTANGLES), seam);
+        if (allowed > 0)
+            CHECK(sqrt(squares / RECTANGLES) <= allowed && seam <= allowed);
+    }
+    table_free(bench, &c);
+}
+
+/* NaN does not spread: it costs no more than the value of its own texel. */
+static void nan_does_not_spread(struct bench *bench) {
+    struct table_case c = {.side = 64, .tile = 64, .depths = random_pixels(64 * 64, 3)};
+    c.depths[1000] = NAN;
+    if (table_make(bench, &c)) {
+        static float results[RECTANGLES][4];
+        for (int i = 0; i < RECTANGLES; i++)
+            memcpy(results[i], (float[4]){0, 0, 64, 64}, 16);
+        look_up(&bench->backend.gl, &c, results);
+        c.depths[1000] = 1;
+        const double error = (double)results[0][0] / 4096 / (double)SCALE - mean_over(&c, (float[4]){0, 0, 64, 64});
+        printf("a map with a NaN: mean off by %.1e\n", error);
+        CHECK_AT_MOST(fabs(error), 1.0 / 4096 + 1.0 / 1048576);
+    }
+    table_free(bench, &c);
+}
+
 int main(void) {
     quality_open();
     static struct bench bench;
@@ -300,6 +353,9 @@ int main(void) {
                     rectangles_are_exact(&bench, sides[i], tile, false, 1.0 / 1048576);
         for (int i = 0; i < 5; i++)
             rectangles_are_exact(&bench, sides[i], 8192, true, 0);
+        plane_is_even(&bench, 64, false, 1e-3);
+        plane_is_even(&bench, 4096, true, 0); /* for comparison */
+        nan_does_not_spread(&bench);
         CHECK_RESULT(gl_check(&bench.backend.gl, "the passes alone"), PNB_OK);
         bench_close(&bench);
     }
