@@ -288,8 +288,13 @@ static void unusable_lights_are_dropped(void **state) {
     example->lights[1].matrix[13] = INFINITY;
     example->lights[2].emission[1] = NAN;
     example->lights[3].radius = NAN; /* not a sun's */
+    example->instances[0].unlit_by = 0xA;
+    example->instances[0].unshadowed_by = 0x7;
     const struct scene *scene = create(fixture);
     assert_int_equal(scene->light_count, 1);
+    assert_true(scene->instances[0].unlit_by == 1); /* the links follow the light that is left */
+    assert_true(scene->instances[0].unshadowed_by == 0);
+    assert_true(scene->light_linked);
     assert_string_equal(scene->lights[0].name, "Sun");
     assert_told(fixture, "light 'Lamp': dropped");
     assert_told(fixture, "light 'Bulb': dropped");
