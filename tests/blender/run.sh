@@ -19,6 +19,7 @@ export BLENDER_USER_RESOURCES="$work" BLENDER_USER_SCRIPTS="$work/scripts" BLEND
 export TEST_OUTPUT="$work/output" PYTHONDONTWRITEBYTECODE=1 LC_ALL=C.UTF-8
 unset DISPLAY WAYLAND_DISPLAY PENUMBRA_LIBRARY PENUMBRA_CAPTURE
 zip=$(ls "$build"/penumbra-*.zip)
+export TEST_ZIP="$zip"
 case $("$blender" --version) in
 "Blender 3."* | "Blender 4.0"* | "Blender 4.1"*)
     export TEST_ADDON=penumbra
