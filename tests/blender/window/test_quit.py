@@ -12,6 +12,7 @@ from window import ViewportTest
 SCRIPT = """
 import bpy
 def begin():
+    print("beginning", flush=True)
     window = bpy.context.window_manager.windows[0]
     scene = window.scene
     scene.render.engine = 'PENUMBRA'
@@ -45,7 +46,8 @@ class Quit(ViewportTest):
         text = done.stdout.decode(errors='replace')
         self.assertEqual(done.returncode, 0, text)
         self.assertIn("quitting", text)
-        self.assertNotIn("Traceback", text)
+        # Debian's Blender 5.2 has one of its own when it starts.
+        self.assertNotIn("Traceback", text[text.index("beginning"):])
         self.assertNotIn("crash", text)
 
     def test_viewport(self):
