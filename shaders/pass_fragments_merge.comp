@@ -13,7 +13,9 @@ uniform uint target_first, source_first; // heads of the levels
 uniform int target_side, source_side;
 uniform ivec2 pair;       // the sources of texel x: scale * x + pair.x and scale * x + pair.y
 uniform int scale;
-uniform float tolerance, most_tolerance, least_tolerance; // metres within which depths are merged, at depth 1 in perspective
+uniform float texels[6]; // width of a texel of each view, metres, at depth 1 in perspective
+// How near depths are merged, in such widths; most_tolerance is times the depth in perspective.
+uniform float tolerance, most_tolerance, least_tolerance;
 uniform int perspective;
 uniform int phase; // STORE, or COUNT and FILL
 uniform int by_reference; // 1: takes the list of the first source as it is
@@ -74,7 +76,7 @@ void main() {
         if (base == 3e38)
             break;
         float z = perspective == 1 ? base : 1.0;
-        float last = base + z * max(min(tolerance, most_tolerance * z), least_tolerance);
+        float last = base + z * texels[texel.z] * max(min(tolerance, most_tolerance * z), least_tolerance);
         vec2 sum = vec2(0.0);
         OPACITY opacity = OPACITY(0.0); // of the four lists, which lie side by side
         take(a, base, last, sum, opacity);

@@ -46,10 +46,12 @@ uint32_t fragment_levels(struct fragment_level levels[MAX_FRAGMENT_LEVELS], cons
 
 static void set_uniforms(const struct gl *gl, GLuint program, const struct fragment_level *below,
                          const struct fragment_level *level, const struct fragment_filter *filter,
-                         const struct light_view *view) {
+                         const struct light_views *views) {
     const int distance = level->stack > 1 ? 1 << (level->stack - 2) : 0, moved = below->border - level->border;
     const int pair[2] = {level->stack == 1 ? -1 : moved - distance, level->stack == 0 ? 1 : moved + distance};
-    const float texel = view->texel * (float)(1 << (level->log2_texel + level->stack)); /* at depth 1 */
+    float texels[MAX_LIGHT_VIEWS]; /* at depth 1 */
+    for (int i = 0; i < views->count; i++)
+        texels[i] = views->views[i].texel * (float)(1 << (level->log2_texel + level->stack));
     const float distance_share = MOST_MERGED / fmaxf(filter->light_size, 1e-6f);
     gl->Uniform1ui(gl->GetUniformLocation(program, "source_first"), below->first_head);
     gl->Uniform1ui(gl->GetUniformLocation(program, "target_first"), level->first_head);
@@ -57,16 +59,17 @@ static void set_uniforms(const struct gl *gl, GLuint program, const struct fragm
     program_set_int(gl, program, "target_side", level->side);
     gl->Uniform2iv(gl->GetUniformLocation(program, "pair"), 1, pair);
     program_set_int(gl, program, "scale", level->stack > 0 ? 1 : 2);
-    program_set_float(gl, program, "tolerance", texel * filter->merge_distance);
-    program_set_float(gl, program, "most_tolerance", texel * distance_share);
-    program_set_float(gl, program, "least_tolerance", texel * LEAST_MERGED);
-    program_set_int(gl, program, "perspective", view->perspective != 0.0f);
+    gl->Uniform1fv(gl->GetUniformLocation(program, "texels"), views->count, texels);
+    program_set_float(gl, program, "tolerance", filter->merge_distance);
+    program_set_float(gl, program, "most_tolerance", distance_share);
+    program_set_float(gl, program, "least_tolerance", LEAST_MERGED);
+    program_set_int(gl, program, "perspective", views->views[0].perspective != 0.0f);
     program_set_int(gl, program, "by_reference", level->log2_texel <= filter->subsampled_levels && level->stack == 0);
 }
 
 enum phase { STORE, COUNT, FILL };
 
-/* cursor[0]: end of the room taken, [1]: fragments of the level. All views have texels of nearly the same size. */
+/* cursor[0]: end of the room taken, [1]: fragments of the level. */
 static pnb_result merge_level(struct frame *frame, const struct fragment_level *level, const struct light_views *views,
                               const struct fragment_filter *filter, enum phase phase, struct fragment_lists *lists,
                               uint32_t cursor[2]) {
@@ -83,7 +86,7 @@ static pnb_result merge_level(struct frame *frame, const struct fragment_level *
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, frame->renderer->cursor_buffer);
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, 2 * sizeof *cursor, cursor, GL_STREAM_READ);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, frame->renderer->cursor_buffer);
-    set_uniforms(gl, program, level - 1, level, filter, &views->views[0]);
+    set_uniforms(gl, program, level - 1, level, filter, views);
     program_set_int(gl, program, "phase", (int)phase);
     const GLuint groups = (GLuint)(level->side + 7) / 8;
     gl->DispatchCompute(groups, groups, (GLuint)views->count);
