@@ -9,6 +9,7 @@ layout(std140, binding = 0) uniform camera_block {
     float perspective;           // 1 or 0
     float sample_index, sample_count;
     float padding;
+    vec4 lit;                    // xy: from window.xy to that of the point a key sample is lit at; z: 1 = there is one
 } camera;
 
 // gbuffer_depth: metres along the camera axis, negative = receives no shadow, 0 = background.
@@ -45,4 +46,14 @@ vec3 camera_position_in(vec4 window, vec2 coordinate, float depth) {
 
 vec3 camera_position(vec2 coordinate, float depth) {
     return camera_position_in(camera.window, coordinate, depth);
+}
+
+// Where a key sample lights a surface: it stands for others, so at the mean of their places in the pixel, on the surface's
+// own tangent plane.
+vec3 camera_mean_position(vec3 position, vec3 normal) {
+    float scale = camera.perspective != 0.0 ? abs(dot(position, camera.axis_z.xyz)) : 1.0;
+    vec3 across = scale * (camera.lit.x * camera.axis_x.xyz + camera.lit.y * camera.axis_y.xyz);
+    vec3 along = camera.perspective != 0.0 ? normalize(position + across) : -camera.axis_z.xyz;
+    vec3 step = across - along * dot(normal, across) / min(dot(normal, along), -0.1); // edge-on the plane is not met
+    return camera.lit.z != 0.0 ? position + step : position;
 }

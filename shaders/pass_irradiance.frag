@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What one light adds to the irradiance of a sample, with and without shadows.
 #include "common_camera.glsl"
+#include "common_steady.glsl"
 #include "common_light.glsl"
 #include "common_irradiance.glsl"
 
@@ -32,8 +33,9 @@ void main() {
     vec2 coordinate = camera_pixel(gl_FragCoord.xy);
     ivec2 pixel = ivec2(coordinate); // in the G-buffer
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
-    vec3 normal = octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).xy);
-    vec3 position = camera_position(coordinate, depth);
+    vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
+    vec3 normal = octahedral_decode(normals.xy);
+    vec3 position = lit_position(camera_position(coordinate, depth), octahedral_decode(normals.zw));
     vec4 v = light_visibility(position, normal, depth > 0.0);
     vec3 irradiance = vec3(0.0), visible = vec3(1.0);
     if (depth != 0.0 && v.a > 0.0) {

@@ -45,14 +45,15 @@ void main() {
     for (int y = first.y; y < last.y; y++)
         for (int x = first.x; x < last.x; x++) {
             float depth = abs(texelFetch(gbuffer_depth, ivec2(x, y), 0).r);
-            vec3 difference = octahedral_decode(texelFetch(gbuffer_normal, ivec2(x, y), 0).zw) - t.normal.xyz;
-            vec3 position = camera_position(vec2(x, y) + 0.5, depth);
-            vec4 value = vec4(position, dot(t.normal.xyz, position));
+            vec3 normal = octahedral_decode(texelFetch(gbuffer_normal, ivec2(x, y), 0).zw);
+            vec3 difference = normal - t.normal.xyz;
+            vec3 position = camera_position(vec2(x, y) + 0.5, depth), mean = camera_mean_position(position, normal);
+            vec4 value = vec4(position, dot(t.normal.xyz, position)), other = vec4(mean, dot(t.normal.xyz, mean));
             bool seen = depth > 0.0;
             nearest = seen ? min(nearest, depth) : nearest;
             farthest = max(farthest, depth);
-            t.minimum = seen ? min(t.minimum, value) : t.minimum;
-            t.maximum = seen ? max(t.maximum, value) : t.maximum;
+            t.minimum = seen ? min(t.minimum, min(value, other)) : t.minimum;
+            t.maximum = seen ? max(t.maximum, max(value, other)) : t.maximum;
             deviation = seen ? max(deviation, dot(difference, difference)) : deviation;
         }
     t.normal.w = sqrt(deviation) + 1e-6;

@@ -2,6 +2,7 @@
 // Visibility of one light at every pixel, by the technique's function `vec3 technique_visibility(receiver r)`.
 // Output: rgb = visibility times weight, a = weight; a = 0 where the light does not reach.
 #include "common_camera.glsl"
+#include "common_steady.glsl"
 #include "common_light.glsl"
 #include "common_shadow.glsl"
 #include "technique"
@@ -18,7 +19,8 @@ void main() {
     if (depth == 0.0)
         return;
     vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
-    vec3 position = camera_position(coordinate, depth);
+    vec3 geometric = octahedral_decode(normals.zw);
+    vec3 position = lit_position(camera_position(coordinate, depth), geometric);
     if (!light_reaches(position, octahedral_decode(normals.xy)))
         return;
     out_visibility = vec4(1.0);
@@ -26,7 +28,6 @@ void main() {
     if (layer < 0 || light.casts_shadow == 0.0 || depth < 0.0)
         return;
     // Light wholly behind the surface itself lights nothing, whatever the shading normal says.
-    vec3 geometric = octahedral_decode(normals.zw);
     receiver r = receiver_create(position, geometric, layer);
     out_visibility.rgb = light_reaches(position, geometric) ? technique_visibility(r) : vec3(0.0);
 }

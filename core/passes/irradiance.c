@@ -69,6 +69,7 @@ pnb_result pass_irradiance(struct frame *frame, const struct frame_light *light,
         begin_light(frame, first, share != NULL);
         test_drawn(frame);
         bind_gbuffer(renderer, program);
+        bind_steady(frame, program);
         gl_texture_bind(gl, &renderer->visibility, 3);
         program_set_int(gl, program, "visibility", 3);
         if (frame->scene->light_linked)

@@ -23,7 +23,7 @@ struct light_block {
 };
 _Static_assert(sizeof(struct light_view) == 96, "std140 layout of light_view");
 _Static_assert(sizeof(struct light_block) == 6 * 96 + 11 * 16, "std140 layout of light_block");
-_Static_assert(sizeof(struct camera_block) == 6 * 16, "std140 layout of camera_block");
+_Static_assert(sizeof(struct camera_block) == 7 * 16, "std140 layout of camera_block");
 
 struct renderer {
     const struct gl *gl;
@@ -69,11 +69,12 @@ void draw_over(struct frame *frame, GLuint program, enum tiles tiles, bool undec
 enum translucency { TRANSLUCENCY_CUT, TRANSLUCENCY_STOCHASTIC, TRANSLUCENCY_OPAQUE, TRANSLUCENCY_ANY };
 pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, enum translucency translucency,
                            struct gl_texture *map);
-/* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor clear.
- * Draws at the size of `map`, which it leaves as it is. most: of each list the nearest so many are kept, 0: all. what:
- * for messages, names the light. */
-pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters, uint32_t most,
-                               const struct gl_texture *map, const char *what, struct fragment_lists *lists);
+/* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor
+ * clear. Draws at the size of `map`, which it leaves as it is. most: of each list the nearest so many are kept, 0: all.
+ * what: for messages, names the light. */
+pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
+                               uint32_t most, const struct gl_texture *map, const char *what,
+                               struct fragment_lists *lists);
 void fragment_lists_bind(const struct gl *gl, const struct fragment_lists *lists);
 void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists);
 /* fragment_filter.c: lists of a map of so many texels per side -> further levels of them. */
@@ -81,15 +82,16 @@ struct fragment_filter {
     int level_count;       /* at most, with the lists themselves */
     int stack_side;        /* a level of no more texels per side is followed by a stack; 0: never */
     int subsampled_levels; /* the first so many leave out texels instead of merging them */
-    int accumulation;      /* of what is merged behind one another: 0 adds opacities, 1 multiplies, 2 takes the greatest */
-    float merge_distance;  /* depths so close become one, in widths of a level's texel in the MIP map */
-    float light_size;      /* side of the emitter, metres; SUN: its extent at distance 1 */
+    int accumulation; /* of what is merged behind one another: 0 adds opacities, 1 multiplies, 2 takes the greatest */
+    float merge_distance; /* depths so close become one, in widths of a level's texel in the MIP map */
+    float light_size;     /* side of the emitter, metres; SUN: its extent at distance 1 */
 };
-pnb_result pass_fragment_filter(struct frame *frame, const struct light_views *views, const struct fragment_filter *filter,
-                                int side, const char *what, struct fragment_lists *lists);
+pnb_result pass_fragment_filter(struct frame *frame, const struct light_views *views,
+                                const struct fragment_filter *filter, int side, const char *what,
+                                struct fragment_lists *lists);
 /* The levels there will be; gives their number. */
-uint32_t fragment_levels(struct fragment_level levels[MAX_FRAGMENT_LEVELS], const struct fragment_filter *filter, int side,
-                         int layers);
+uint32_t fragment_levels(struct fragment_level levels[MAX_FRAGMENT_LEVELS], const struct fragment_filter *filter,
+                         int side, int layers);
 /* Bytes of one fragment. */
 uint64_t fragment_size(const struct scene *scene);
 /* What every shader that includes common_fragments.glsl needs: whether opacity has a colour. NULL: nothing. */
@@ -114,7 +116,8 @@ struct summed_area {
 /* Format of a table: 32-bit integers, or with `floats` the bits of floats. */
 GLenum summed_area_format(int channels);
 /* summed_area.c: values -> one level of table, summed_area_format, a layer per view. */
-pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums, const struct gl_texture *table, int level);
+pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums, const struct gl_texture *table,
+                            int level);
 /* planes.c: light->shadow_map -> light->planes, RGBA32F, a texel per 4 x 4 texels with all levels: see
  * common_planes.glsl. Needs the light's block. */
 pnb_result pass_planes(struct frame *frame, struct frame_light *light);
@@ -129,6 +132,10 @@ void test_drawn(struct frame *frame);
 /* reuse.c: how many samples are lit at every pixel, and whether this one is. */
 uint32_t reuse_key_count(const struct frame *frame);
 bool reuse_is_key(const struct frame *frame);
+/* Gives the current program what common_steady.glsl reads. */
+void bind_steady(struct frame *frame, GLuint program);
+/* Sets camera.lit of a key sample: the mean of the samples it stands for. */
+void reuse_light_mean(struct frame *frame);
 /* Keeps the key's G-buffer, before the next sample's is drawn. */
 void reuse_keep_key(struct frame *frame);
 /* Every pixel is drawn, or none. */

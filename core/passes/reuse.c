@@ -16,6 +16,25 @@ bool reuse_is_key(const struct frame *frame) {
     return !frame->reuses || frame->sample % KEY_SAMPLES == 0;
 }
 
+void reuse_light_mean(struct frame *frame) {
+    const struct settings *settings = frame->settings;
+    if (!frame->reuses || !reuse_is_key(frame))
+        return;
+    float mean[2] = {0, 0}, own[2] = {0, 0}, count = 0;
+    for (uint32_t i = frame->sample; i < frame->sample + KEY_SAMPLES && i < settings->samples; i++, count++) {
+        float offset[2];
+        pixel_sample(i, settings->samples, settings->filter_width, offset);
+        for (int axis = 0; axis < 2; axis++) {
+            mean[axis] += offset[axis];
+            own[axis] = i == frame->sample ? offset[axis] : own[axis];
+        }
+    }
+    struct camera_block *camera = &frame->camera;
+    for (int axis = 0; axis < 2; axis++)
+        camera->lit[axis] = (mean[axis] / count - own[axis]) * camera->window[2 + axis] / camera->image[axis];
+    camera->lit[2] = 1.0f;
+}
+
 static void swap_textures(struct gl_texture *a, struct gl_texture *b) {
     const struct gl_texture kept = *a;
     *a = *b;
@@ -43,20 +62,40 @@ pnb_result reuse_set_drawn(struct frame *frame, bool drawn) {
     return result;
 }
 
-/* pass_reuse.frag: texels. */
-static int texel_widths(const struct frame *frame, vec4 texels[MAX_LIGHTS]) {
+/* What a pixel may cover of one light for its visibility and irradiance to be all but linear within: a texel of its
+ * map, a hundredth of its distance, a tenth of the soft edge of its cone; as a width at distance 1. */
+static float steady_width(const struct frame_light *light) {
+    const struct emitter *emitter = &light->emitter;
+    float width = 0.01f;
+    for (int view = 0; view < light->views.count; view++)
+        width = fminf(width, light->views.views[view].texel);
+    if (emitter->type == PNB_LIGHT_SPOT) {
+        const float sine = sqrtf(fmaxf(1.0f - emitter->cos_cone * emitter->cos_cone, 1e-6f));
+        width = fminf(width, 0.1f * (1.0f - emitter->cos_cone) * emitter->blend / sine);
+    }
+    return width;
+}
+
+/* pass_reuse.frag: widths. A SUN's texels are as wide everywhere, and without a map it is steady. */
+static int steady_widths(const struct frame *frame, vec4 widths[MAX_LIGHTS]) {
     int count = 0;
     for (uint32_t i = 0; i < frame->scene->light_count; i++) {
         const struct frame_light *light = &frame->lights[i];
-        if (light->views.count == 0)
+        const bool sun = light->emitter.type == PNB_LIGHT_SUN;
+        if (sun && light->views.count == 0)
             continue;
-        float texel = light->views.views[0].texel;
-        for (int view = 1; view < light->views.count; view++)
-            texel = fminf(texel, light->views.views[view].texel);
-        glm_vec4((float *)light->emitter.position, light->views.views[0].perspective != 0.0f ? texel : -texel,
-                 texels[count++]);
+        glm_vec4((float *)light->emitter.position, sun ? -light->views.views[0].texel : steady_width(light),
+                 widths[count++]);
     }
     return count;
+}
+
+void bind_steady(struct frame *frame, GLuint program) {
+    vec4 widths[MAX_LIGHTS];
+    const int count = frame->reuses ? steady_widths(frame, widths) : 0;
+    program_set_int(frame->gl, program, "width_count", count);
+    if (count > 0)
+        frame->gl->Uniform4fv(frame->gl->GetUniformLocation(program, "widths"), count, widths[0]);
 }
 
 pnb_result pass_reuse(struct frame *frame) {
@@ -69,8 +108,6 @@ pnb_result pass_reuse(struct frame *frame) {
         return result;
     const struct gl_target target = {.depth = &renderer->drawn};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) == PNB_OK) {
-        vec4 texels[MAX_LIGHTS];
-        const int count = texel_widths(frame, texels);
         gl->Enable(GL_DEPTH_TEST);
         gl->DepthFunc(GL_ALWAYS);
         gl->DepthMask(GL_TRUE);
@@ -80,9 +117,7 @@ pnb_result pass_reuse(struct frame *frame) {
         program_set_int(gl, program, "key_depth", 3);
         program_set_int(gl, program, "key_normal", 4);
         program_set_vec4(gl, program, "key_window", frame->key_window);
-        program_set_int(gl, program, "texel_count", count);
-        if (count > 0)
-            gl->Uniform4fv(gl->GetUniformLocation(program, "texels"), count, texels[0]);
+        bind_steady(frame, program);
         draw_screen(renderer);
         gl->DepthFunc(GL_LESS);
         result = gl_check(gl, "reuse");

@@ -105,12 +105,11 @@ void bind_technique(struct frame *frame, const struct frame_light *light, GLuint
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const struct program_desc desc = {
-        .vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
-        .fragment = "pass_visibility.frag",
-        .technique = frame->settings->technique->shader,
-        .defines = {light_defines(&light->emitter, &light->views), technique_defines(frame->settings),
-                    fragment_defines(frame->scene)}};
+    const struct program_desc desc = {.vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
+                                      .fragment = "pass_visibility.frag",
+                                      .technique = frame->settings->technique->shader,
+                                      .defines = {light_defines(&light->emitter, &light->views),
+                                                  technique_defines(frame->settings), fragment_defines(frame->scene)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
@@ -122,6 +121,7 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light,
     test_drawn(frame);
     gl->Disable(GL_BLEND);
     bind_gbuffer(renderer, program);
+    bind_steady(frame, program);
     bind_technique(frame, light, program);
     draw_over(frame, program, tiles, true);
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));

@@ -18,16 +18,17 @@ struct camera_block {
     vec4 window; /* left, bottom, width, height of the full image at distance 1 or in metres */
     vec4 image;  /* full width and height, lower left pixel of the crop */
     float perspective, sample_index, sample_count, padding;
+    vec4 lit; /* see reuse.c */
 };
 
 /* One level of filtered fragment lists, a list for each texel of each view. */
 #define MAX_FRAGMENT_LEVELS 14
 struct fragment_level {
     uint32_t first_head;
-    int side;           /* texels */
-    int log2_texel;     /* side of a texel in texels of the map */
-    int stack;          /* 0: of a MIP map, whose texel i covers i .. i + 1; n: the n-th of a stack */
-    int border;         /* of a stack: texels on each side whose filters reach into the map; texel i lies at i - border */
+    int side;       /* texels */
+    int log2_texel; /* side of a texel in texels of the map */
+    int stack;      /* 0: of a MIP map, whose texel i covers i .. i + 1; n: the n-th of a stack */
+    int border;     /* of a stack: texels on each side whose filters reach into the map; texel i lies at i - border */
     float filter_width; /* of the box of equal variance, bilinear interpolation included, in texels of the map */
 };
 
@@ -47,7 +48,7 @@ struct frame_light {
     const struct scene_light *source;
     struct emitter emitter;
     struct light_views views;
-    struct gl_texture shadow_map, min_max, planes; /* a layer per view; kept over the samples of a pixel */
+    struct gl_texture shadow_map, min_max, planes;  /* a layer per view; kept over the samples of a pixel */
     struct gl_texture prefiltered[MAX_PREFILTERED]; /* the same, of the technique's own making */
     int prefiltered_tile; /* of summed-area tables among them: texels along the side of a tile */
     struct fragment_lists lists;
@@ -62,20 +63,20 @@ struct frame {
     struct pnb_job *job;
     const struct scene *scene;
     const struct settings *settings;
-    vec3 origin;               /* of relative world space: the camera's position */
+    vec3 origin; /* of relative world space: the camera's position */
     struct camera_block camera;
-    int width, height;         /* of the crop */
-    uint32_t sample;           /* anti-aliasing sample being drawn */
-    uint32_t light;            /* light being drawn */
-    bool reuses;               /* samples use the key sample's irradiance where they can, reuse.c */
-    vec4 key_window;           /* camera.window of the key sample */
-    uint32_t sums_samples;     /* in the sums, with the one being drawn */
+    int width, height;     /* of the crop */
+    uint32_t sample;       /* anti-aliasing sample being drawn */
+    uint32_t light;        /* light being drawn */
+    bool reuses;           /* samples use the key sample's irradiance where they can, reuse.c */
+    vec4 key_window;       /* camera.window of the key sample */
+    uint32_t sums_samples; /* in the sums, with the one being drawn */
 
-    struct box *receivers;     /* what the camera sees, by tiles; see tiles.c */
+    struct box *receivers; /* what the camera sees, by tiles; see tiles.c */
     size_t receiver_count;
     struct box *coarse_receivers; /* the same in fewer boxes, for techniques that fit many views */
     size_t coarse_receiver_count;
-    struct box *casters;       /* bounds of the instances that cast shadows */
+    struct box *casters; /* bounds of the instances that cast shadows */
     size_t caster_count;
     float *images[IMAGE_LIGHT_SHADOWS + MAX_LIGHTS]; /* pixels of the job's images, NULL: not wanted */
 

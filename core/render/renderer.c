@@ -85,6 +85,7 @@ void draw_screen(struct renderer *renderer) {
 /* The whole first sample, crop or not: light views must not depend on the crop. */
 static pnb_result find_receivers(struct frame *frame) {
     camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, 0);
+    reuse_light_mean(frame);
     pnb_result result = pass_gbuffer(frame, true);
     if (result == PNB_OK)
         result = pass_tiles(frame);
@@ -212,6 +213,7 @@ static pnb_result begin_sample(struct frame *frame, bool drawn_already) {
     pnb_result result = PNB_OK;
     reuse_keep_key(frame);
     camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
+    reuse_light_mean(frame);
     if (!drawn_already)
         result = pass_gbuffer(frame, false);
     if (result == PNB_OK && !drawn_already && key && uses_tiles(frame))
