@@ -11,7 +11,7 @@ uniform vec4 texture_use; // x: base_color_texture, y: alpha_texture, z: 1 = alp
 uniform vec4 clearness;   // rgb: share of the light that shines through and is not absorbed; a: 1 = tinted by the texture
 uniform vec4 uv_rows[2]; // texture coordinates are these rows times (u, v, 1)
 uniform int use_vertex_color;
-uniform int cull_back;
+uniform int culled_faces; // 0: none, 1: back, 2: front
 flat in int mirrored; // 1: the instance's matrix swaps front and back
 
 vec2 material_uv(vec2 uv) {
@@ -51,7 +51,7 @@ vec3 material_emission(vec2 mesh_uv) {
 }
 
 bool is_culled() {
-    return cull_back != 0 && gl_FrontFacing == (mirrored != 0);
+    return culled_faces != 0 && gl_FrontFacing == ((mirrored != 0) == (culled_faces == 1));
 }
 #else
 vec4 material_color(vec2 uv, vec3 tint) {

@@ -46,7 +46,7 @@ static pnb_result use_programs(struct frame *frame, const struct light_view *vie
 
 /* Counts or collects the fragments of one view. */
 static pnb_result draw_view(struct frame *frame, const struct light_view *view, bool collect, enum casters casters,
-                            const struct gl_texture *map, int layer) {
+                            bool back_faces, const struct gl_texture *map, int layer) {
     struct renderer *renderer = frame->renderer;
     const struct gl_target target = {.depth = map, .layer = layer};
     pnb_result result = gl_target_bind(frame->gl, renderer->framebuffer, &target);
@@ -58,19 +58,19 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
     GLuint programs[2];
     if ((result = use_programs(frame, view, collect, casters, layer, map->width, clip, programs)) != PNB_OK)
         return result;
-    return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, (uint64_t)1 << frame->light,
-                          &(struct draw_programs){programs[0], programs[1], casters, PNB_MATERIAL_CULL_SHADOW});
+    const struct draw_programs draw = {programs[0], programs[1], casters, PNB_MATERIAL_CULL_SHADOW, back_faces};
+    return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, (uint64_t)1 << frame->light, &draw);
 }
 
 static pnb_result draw_views(struct frame *frame, const struct light_views *views, bool collect, enum casters casters,
-                             const struct gl_texture *map, const struct fragment_lists *lists) {
+                             bool back_faces, const struct gl_texture *map, const struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
     pnb_result result = timer_begin(&frame->renderer->timer, collect ? "Fragment collect" : "Fragment count");
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
     fragment_lists_bind(gl, lists);
     for (int i = 0; i < views->count && result == PNB_OK; i++)
-        result = draw_view(frame, &views->views[i], collect, casters, map, i);
+        result = draw_view(frame, &views->views[i], collect, casters, back_faces, map, i);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     timer_end(&frame->renderer->timer, collect ? lists->fragments.bytes : lists->heads.bytes);
     return result;
@@ -114,7 +114,7 @@ static pnb_result scan(struct frame *frame, uint32_t heads, struct fragment_list
 }
 
 pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
-                               uint32_t most, const struct gl_texture *map, const char *what,
+                               bool back_faces, uint32_t most, const struct gl_texture *map, const char *what,
                                struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
     const uint64_t heads = (uint64_t)map->width * (uint64_t)map->width * (uint64_t)views->count;
@@ -124,11 +124,11 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
     if (result != PNB_OK)
         return result;
     gl_buffer_clear(gl, &lists->heads, heads * 8);
-    if ((result = draw_views(frame, views, false, casters, map, lists)) != PNB_OK ||
+    if ((result = draw_views(frame, views, false, casters, back_faces, map, lists)) != PNB_OK ||
         (result = scan(frame, (uint32_t)heads, lists)) != PNB_OK ||
         (result = gl_buffer_ensure(gl, &lists->fragments, lists->count * fragment_size(frame->scene), 0, what)) !=
             PNB_OK ||
-        (result = draw_views(frame, views, true, casters, map, lists)) != PNB_OK)
+        (result = draw_views(frame, views, true, casters, back_faces, map, lists)) != PNB_OK)
         return result;
     return dispatch(frame, "Fragment sort", "pass_fragments_sort.comp", (uint32_t)heads, 64, most, lists);
 }

@@ -142,7 +142,8 @@ static pnb_result mesh_create(struct gpu_cache *cache, const pnb_mesh *from, str
     const uint64_t bytes = from->vertex_count * sizeof(struct vertex) + from->index_count * sizeof(uint32_t);
     *mesh = (struct gpu_mesh){.entry = {.key = from->content, .bytes = bytes},
                               .ranges = ranges,
-                              .range_count = from->range_count};
+                              .range_count = from->range_count,
+                              .closed = from->closed};
     mesh_upload(cache, from, mesh);
     pnb_result result = gl_check(cache->gl, "mesh upload");
     if (result == PNB_OK) {

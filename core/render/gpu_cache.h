@@ -27,6 +27,7 @@ struct gpu_mesh {
     GLuint vertex_array, vertex_buffer, index_buffer;
     struct mesh_range *ranges;
     uint32_t range_count;
+    bool closed;
 };
 
 struct gpu_image {

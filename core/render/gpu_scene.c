@@ -255,14 +255,24 @@ static bool box_is_outside(const struct box *box, const mat4 clip) {
     return outside != 0;
 }
 
+/* Which faces a draw leaves out; as common_material.glsl numbers them. */
+enum faces { FACES_NONE, FACES_BACK, FACES_FRONT };
+
+static enum faces culled_faces(const struct draw *draw, const struct gpu_material *material,
+                               const struct draw_programs *programs) {
+    if (material->flags & programs->cull)
+        return FACES_BACK;
+    return programs->back_faces && draw->mesh->closed && !material->translucent ? FACES_FRONT : FACES_NONE;
+}
+
 /* special: with the program for materials that need more than a base colour. */
 static void bind_material(const struct gl *gl, GLuint program, const struct gpu_material *material, bool special,
-                          uint32_t cull) {
+                          enum faces culled) {
     program_set_vec4(gl, program, "base_color", material->base_color);
     program_set_vec4(gl, program, "emission", material->emission);
     if (!special)
         return;
-    program_set_int(gl, program, "cull_back", (material->flags & cull) != 0);
+    program_set_int(gl, program, "culled_faces", (int)culled);
     program_set_vec4(gl, program, "clearness", material->clearness);
     const vec4 use = {material->base_color_texture ? 1.0f : 0.0f, material->alpha_texture ? 1.0f : 0.0f,
                       material->alpha_is_grey ? 0.0f : 1.0f, material->emission_texture ? 1.0f : 0.0f};
@@ -290,9 +300,7 @@ static bool is_drawn(const struct gpu_material *material, const struct draw_prog
 }
 
 static bool is_special(const struct gpu_material *material, const struct draw_programs *programs) {
-    const bool see_through = programs->casters == CASTERS_NONE ? material->transparent || material->textured
-                                                               : material->translucent;
-    return see_through || (material->flags & programs->cull);
+    return programs->casters == CASTERS_NONE ? material->transparent || material->textured : material->translucent;
 }
 
 static bool is_same_call(const struct draw *a, const struct draw *b) {
@@ -326,12 +334,13 @@ pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hid
         base += (uint32_t)instances;
         if (instances == 0 || !is_drawn(material, programs))
             continue;
-        const bool special = is_special(material, programs);
+        const enum faces faces = culled_faces(draw, material, programs);
+        const bool special = is_special(material, programs) || faces != FACES_NONE;
         const GLuint program = special ? programs->special : programs->plain;
         if (program != current)
             gl->UseProgram(program);
         current = program;
-        bind_material(gl, program, material, special, programs->cull);
+        bind_material(gl, program, material, special, faces);
         gl->BindVertexArray(draw->mesh->vertex_array);
         gl->DrawElementsInstancedBaseInstance(GL_TRIANGLES, (GLsizei)draw->range->index_count, GL_UNSIGNED_INT,
                                               (const void *)(uintptr_t)(draw->range->first_index * sizeof(uint32_t)),

@@ -21,11 +21,12 @@ uint64_t gpu_scene_bytes(const struct gpu_scene *scene);
 enum casters { CASTERS_NONE, CASTERS_ALL, CASTERS_TRANSLUCENT };
 
 /* Programs for materials that are one opaque colour and for all others; uniforms of the pass are set beforehand. A pass
- * over casters needs `special` only for what light shines through. */
+ * over casters needs `special` only for what light shines through, or where faces are left out. */
 struct draw_programs {
     GLuint plain, special;
     enum casters casters;
     uint32_t cull;           /* the enum pnb_material_flags that hides back faces in this pass */
+    bool back_faces;         /* of opaque closed meshes only the back faces */
 };
 
 /* Draws every instance inside the view volume of `clip` (relative world to clip space) that lacks the flag

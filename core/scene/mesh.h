@@ -14,7 +14,7 @@
 pnb_mesh *mesh_allocate(const char *name);
 /* Fills vertices, indices, ranges and the warning from a checked description. */
 pnb_result mesh_build(const pnb_mesh_desc *from, pnb_mesh *mesh);
-/* Computes bounds and content key of a filled mesh. */
+/* Computes bounds and content key of a filled mesh, and whether it is closed. */
 void mesh_finish(pnb_mesh *mesh);
 
 #endif

@@ -106,8 +106,8 @@ static pnb_result draw_sample(struct frame *frame, const struct emitter *emitter
     if (shadows)
         result = pass_shadow_map(frame, &views, TRANSLUCENCY_OPAQUE, &maps->opaque);
     if (result == PNB_OK && shadows && frame->scene->translucent)
-        result = pass_fragment_lists(frame, &views, CASTERS_TRANSLUCENT, 0, &maps->opaque, "translucent surfaces",
-                                     &maps->translucent);
+        result = pass_fragment_lists(frame, &views, CASTERS_TRANSLUCENT, false, 0, &maps->opaque,
+                                     "translucent surfaces", &maps->translucent);
     if (result != PNB_OK)
         return result;
     light_block_upload(frame->renderer, &point, &views);

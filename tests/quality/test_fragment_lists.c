@@ -237,7 +237,7 @@ static bool make_lists(struct bench *bench, const struct stage *stage, const str
     struct gl_texture map = {0};
     CHECK_RESULT(gpu_scene_update(bench->renderer->scene, &bench->frame), PNB_OK);
     CHECK_RESULT(pass_shadow_map(&bench->frame, &views, TRANSLUCENCY_ANY, &map), PNB_OK);
-    bool good = CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, CASTERS_ALL, 0, &map, "test", lists), PNB_OK) &&
+    bool good = CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, CASTERS_ALL, false, 0, &map, "test", lists), PNB_OK) &&
                 CHECK_RESULT(pass_fragment_filter(&bench->frame, &views, filter, SIDE, "test", lists), PNB_OK);
     gl_texture_free(&bench->backend.gl, &map);
     memory_free(bench->frame.casters);

@@ -64,9 +64,47 @@ static void y_map_has_no_texels(void) {
     test_scene_destroy(&test);
 }
 
+/* Bytes of the lists, and the error, with all faces or only back faces. */
+static double fragment_bytes(double faces, const struct render *truth, double *error) {
+    struct test_scene *test = quality_scene("tall-box", TEST_LIGHT_RECTANGLE, 0, NAN);
+    pnb_settings settings = quality_scene_settings("MULTILAYER", test, HEIGHT);
+    const pnb_value value = {"faces", faces};
+    settings.values = &value;
+    settings.value_count = 1;
+    struct render render = quality_render(test_scene_get(test), &settings);
+    double bytes = 0;
+    for (uint32_t i = 0; render.job && i < pnb_job_timing_count(render.job); i++) {
+        pnb_timing timing = PNB_INIT(pnb_timing);
+        CHECK_RESULT(pnb_job_get_timing(render.job, i, &timing), PNB_OK);
+        if (strcmp(timing.name, "Fragment collect") == 0)
+            bytes = (double)timing.bytes;
+    }
+    *error = render_rmse(truth, &render);
+    render_free(&render);
+    test_scene_destroy(&test);
+    return bytes;
+}
+
+/* Nearly all that the map sees is the floor, which stays. */
+static void back_faces_shorten_lists(void) {
+    struct test_scene *test = quality_scene("tall-box", TEST_LIGHT_RECTANGLE, 0, NAN);
+    pnb_settings settings = quality_scene_settings("REFERENCE", test, HEIGHT);
+    settings.light_samples = 10;
+    struct render truth = quality_render(test_scene_get(test), &settings);
+    double errors[2];
+    const double all = fragment_bytes(0, &truth, &errors[0]), back = fragment_bytes(1, &truth, &errors[1]);
+    printf("tall box: lists of all faces %.0f bytes, error %.4f; of back faces %.0f, %.4f\n", all, errors[0], back,
+           errors[1]);
+    CHECK(back < all);
+    CHECK_AT_MOST(errors[1], 0.03); /* its shadow is still there: without it the error is above 0.1 */
+    render_free(&truth);
+    test_scene_destroy(&test);
+}
+
 int main(void) {
     quality_open();
     overlapping_occluders();
     y_map_has_no_texels();
+    back_faces_shorten_lists();
     return quality_close();
 }

@@ -147,6 +147,35 @@ static void directionless_vectors_do_not_pack(void **state) {
     assert_false(octahedral_pack((double[3]){(double)INFINITY, 0, 1}, packed));
 }
 
+/* ---- Closed meshes ---- */
+
+static bool cube_is_closed(const struct cube *cube, uint32_t triangles) {
+    pnb_mesh_desc desc = cube->desc;
+    desc.triangle_count = triangles;
+    pnb_mesh *mesh = create(&desc);
+    const bool closed = mesh->closed;
+    pnb_mesh_destroy(&mesh);
+    return closed;
+}
+
+/* By the places of the edges' ends: split corners do not open a mesh, a missing or a turned triangle does. */
+static void closed_meshes_are_known(void **state) {
+    (void)state;
+    struct cube cube;
+    cube_init(&cube);
+    assert_true(cube_is_closed(&cube, 12));
+    assert_false(cube_is_closed(&cube, 11));
+    assert_false(cube_is_closed(&cube, 0));
+    for (uint32_t v = 0; v < 8; v++) {
+        cube.positions[v][2] = v & 4u ? 1.0f : (v & 1u ? -0.0f : 0.0f); /* one zero and the other */
+    }
+    assert_true(cube_is_closed(&cube, 12));
+    const uint32_t kept = cube.triangles[5][1];
+    cube.triangles[5][1] = cube.triangles[5][2];
+    cube.triangles[5][2] = kept;
+    assert_false(cube_is_closed(&cube, 12));
+}
+
 /* ---- Welding ---- */
 
 static void cube_is_welded_and_sorted(void **state) {
@@ -637,6 +666,7 @@ int main(void) {
         cmocka_unit_test(normals_survive_packing),
         cmocka_unit_test(axes_pack_exactly),
         cmocka_unit_test(directionless_vectors_do_not_pack),
+        cmocka_unit_test(closed_meshes_are_known),
         cmocka_unit_test(cube_is_welded_and_sorted),
         cmocka_unit_test(equal_corners_are_one_vertex),
         cmocka_unit_test(flat_normals_stand_in),
