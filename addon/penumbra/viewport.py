@@ -224,7 +224,8 @@ class Viewport:
         """Asks for a redraw when there is something to draw or to start; whether to be asked again."""
         due = self._next is not None and self._run is None and time.monotonic() >= self._next[1]
         if (due or self._run and self._run.has_news()) and not self._host.tag_redraw():
-            return False
+            self._stop()            # nothing shows it any more, or not for now: then it starts anew when drawn
+            self._wanted = None
         return not self.is_at_rest()
 
     def is_at_rest(self):
