@@ -92,8 +92,8 @@ make_root() {
         printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d" &&
         chmod +x "$root/usr/sbin/policy-rc.d" &&
         ln -sf ../proc/self/mounts "$root/etc/mtab" &&
-        in_root "$root" apt-get -q install -y --no-install-recommends blender python3 python3-cattr libgl1 libegl1 libegl-mesa0 \
-            libgl1-mesa-dri xvfb xauth &&
+        in_root "$root" apt-get -q install -y --no-install-recommends blender python3 python3-cattr python3-requests \
+            libgl1 libegl1 libegl-mesa0 libgl1-mesa-dri xvfb xauth &&
         in_root "$root" apt-get clean &&
         mv "$root" "$cache/$suite"
 }
