@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The material of one draw (gpu_scene.c). SPECIAL: it has textures, holes or culled back faces.
+// The material of one draw (gpu_scene.c). SPECIAL: it has textures, holes or culled faces.
 
 uniform vec4 base_color; // rgb, alpha
 uniform vec4 emission;   // rgb; a: 1 = holdout
@@ -12,7 +12,7 @@ uniform vec4 clearness;   // rgb: share of the light that shines through and is 
 uniform vec4 uv_rows[2]; // texture coordinates are these rows times (u, v, 1)
 uniform int use_vertex_color;
 uniform int culled_faces; // 0: none, 1: back, 2: front
-flat in int mirrored; // 1: the instance's matrix swaps front and back
+flat in int mirrored; // 1: front faces are drawn clockwise
 
 vec2 material_uv(vec2 uv) {
     return vec2(dot(uv_rows[0].xyz, vec3(uv, 1.0)), dot(uv_rows[1].xyz, vec3(uv, 1.0)));

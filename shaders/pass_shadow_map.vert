@@ -11,7 +11,8 @@ flat out int mirrored;
 void main() {
 #ifdef SPECIAL
     uv = vertex_uv;
-    mirrored = dot(instance_x.xyz, cross(instance_y.xyz, instance_z.xyz)) < 0.0 ? 1 : 0;
+    // Light space is right-handed with z away from the light, which sees it as in a mirror.
+    mirrored = dot(instance_x.xyz, cross(instance_y.xyz, instance_z.xyz)) < 0.0 ? 0 : 1;
 #endif
     gl_Position = projection * vec4(instance_position(), 1.0);
 }

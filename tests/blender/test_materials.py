@@ -169,7 +169,7 @@ class BackfaceCulling(MaterialTest):
         self.assert_sees(self.culled(scale=(1, 1, -1)), 'shadow')
 
     def test_shadow(self):
-        if not hasattr(bpy.types.Material, 'use_backface_culling_shadow'):
+        if 'use_backface_culling_shadow' not in bpy.types.Material.bl_rna.properties:
             self.skipTest("Blender has no such switch yet")
         half_turn = (3.14159265, 0, 0)
         self.assert_sees(self.culled(rotation=half_turn, shadow=True), 'floor')

@@ -214,6 +214,37 @@ static void alpha(void) {
     stage_destroy(&clear);
 }
 
+/* ---- Culling ---- */
+
+/* Mean visibility of the floor under a sheet whose back faces cast no shadow; unscaled its front is up. */
+static double under_one_sided_sheet(enum test_light light, float scale_x, float scale_z) {
+    struct stage *stage = stage_create(light);
+    struct shape shape = {0};
+    shape_rectangle(&shape, -0.5f, -0.5f, 0.5f, 0.5f, 0);
+    pnb_instance *sheet = builder_instance(&stage->builder, builder_mesh(&stage->builder, &shape, "sheet"),
+                                           MATERIAL_GREEN, (struct placement){.position = {0, 0, 1}});
+    sheet->flags = PNB_INSTANCE_HIDDEN_FROM_CAMERA;
+    sheet->matrix[0] *= scale_x;
+    sheet->matrix[10] *= scale_z;
+    stage->builder.materials[MATERIAL_GREEN].flags = PNB_MATERIAL_CULL_SHADOW;
+    stage_render(stage);
+    const double visibility = mean_visibility(stage, true);
+    stage_destroy(&stage);
+    return visibility;
+}
+
+/* Seen from the light. The front goes with the sheet: mirrored along x it is still up, along z it is down. */
+static void back_faces_are_culled(enum test_light light) {
+    const double front = under_one_sided_sheet(light, 1, 1), mirror = under_one_sided_sheet(light, -1, 1);
+    const double back = under_one_sided_sheet(light, 1, -1), turned = under_one_sided_sheet(light, -1, -1);
+    printf("%-9s one-sided sheet: floor %.4f and %.4f under its front, %.4f and %.4f under its back\n",
+           test_light_names[light], front, mirror, back, turned);
+    CHECK_AT_MOST(front, 0.995);
+    CHECK_NEAR(mirror, front, 1e-6); /* the same triangles */
+    CHECK(back == 1);
+    CHECK(turned == 1);
+}
+
 /* ---- Matrices ---- */
 
 static void mirrored(void) {
@@ -261,8 +292,10 @@ static void flattened(void) {
 
 int main(void) {
     quality_open();
-    for (int light = 0; light < TEST_LIGHT_COUNT; light++)
+    for (int light = 0; light < TEST_LIGHT_COUNT; light++) {
         instance_flags((enum test_light)light);
+        back_faces_are_culled((enum test_light)light);
+    }
     no_receive_is_for_one();
     light_flag();
     alpha();
