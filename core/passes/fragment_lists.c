@@ -124,6 +124,8 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
     if (result != PNB_OK)
         return result;
     gl_buffer_clear(gl, &lists->heads, heads * 8);
+    if (back_faces)
+        gpu_scene_find_solids(frame->renderer->scene, frame->scene);
     if ((result = draw_views(frame, views, false, casters, back_faces, map, lists)) != PNB_OK ||
         (result = scan(frame, (uint32_t)heads, lists)) != PNB_OK ||
         (result = gl_buffer_ensure(gl, &lists->fragments, lists->count * fragment_size(frame->scene), 0, what)) !=

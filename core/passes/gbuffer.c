@@ -88,9 +88,9 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
             program_set_mat4(gl, programs[i], "projection", (const float *)clip);
     }
     if (result == PNB_OK)
-        result =
-            gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA, 0,
-                           &(struct draw_programs){programs[0], programs[1], CASTERS_NONE, PNB_MATERIAL_CULL_CAMERA, false});
+        result = gpu_scene_draw(
+            renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA, 0,
+            &(struct draw_programs){programs[0], programs[1], CASTERS_NONE, PNB_MATERIAL_CULL_CAMERA, false});
     gl->Disable(GL_SCISSOR_TEST);
     timer_end(&renderer->timer,
               gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +

@@ -71,7 +71,7 @@ pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
                            struct gl_texture *map);
 /* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor
  * clear. Draws at the size of `map`, which it leaves as it is. most: of each list the nearest so many are kept, 0: all.
- * back_faces: without the front faces of opaque closed meshes. what: for messages, names the light. */
+ * back_faces: without the front faces of solid bodies. what: for messages, names the light. */
 pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
                                bool back_faces, uint32_t most, const struct gl_texture *map, const char *what,
                                struct fragment_lists *lists);

@@ -29,8 +29,9 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
         program_set_int(gl, programs[i], "translucency", (int)translucency);
         program_set_int(gl, programs[i], "sample_index", (int)frame->sample);
     }
-    return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, (uint64_t)1 << frame->light,
-                          &(struct draw_programs){programs[0], programs[1], CASTERS_ALL, PNB_MATERIAL_CULL_SHADOW, false});
+    return gpu_scene_draw(
+        renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, (uint64_t)1 << frame->light,
+        &(struct draw_programs){programs[0], programs[1], CASTERS_ALL, PNB_MATERIAL_CULL_SHADOW, false});
 }
 
 pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, enum translucency translucency,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gpu_cache.h"
 #include "../memory.h"
+#include "../scene/mesh.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -142,8 +143,7 @@ static pnb_result mesh_create(struct gpu_cache *cache, const pnb_mesh *from, str
     const uint64_t bytes = from->vertex_count * sizeof(struct vertex) + from->index_count * sizeof(uint32_t);
     *mesh = (struct gpu_mesh){.entry = {.key = from->content, .bytes = bytes},
                               .ranges = ranges,
-                              .range_count = from->range_count,
-                              .closed = from->closed};
+                              .range_count = from->range_count};
     mesh_upload(cache, from, mesh);
     pnb_result result = gl_check(cache->gl, "mesh upload");
     if (result == PNB_OK) {
@@ -165,6 +165,16 @@ pnb_result gpu_cache_mesh(struct gpu_cache *cache, const pnb_mesh *mesh, const s
     if (result == PNB_OK)
         *out = (const struct gpu_mesh *)*slot;
     return result;
+}
+
+bool gpu_cache_is_closed(struct gpu_cache *cache, const pnb_mesh *mesh) {
+    struct gpu_entry **slot;
+    if (table_find(cache, &cache->meshes, &mesh->content, &slot) != PNB_OK || !*slot)
+        return false;
+    struct gpu_mesh *kept = (struct gpu_mesh *)*slot;
+    if (kept->closed == CLOSED_UNKNOWN)
+        kept->closed = mesh_is_closed(mesh) ? CLOSED_YES : CLOSED_NO;
+    return kept->closed == CLOSED_YES;
 }
 
 /* ---- Images ---- */

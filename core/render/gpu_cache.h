@@ -27,7 +27,7 @@ struct gpu_mesh {
     GLuint vertex_array, vertex_buffer, index_buffer;
     struct mesh_range *ranges;
     uint32_t range_count;
-    bool closed;
+    enum { CLOSED_UNKNOWN, CLOSED_NO, CLOSED_YES } closed; /* see gpu_cache_is_closed */
 };
 
 struct gpu_image {
@@ -57,6 +57,8 @@ void gpu_cache_free(struct gpu_cache *cache);
 void gpu_cache_begin_frame(struct gpu_cache *cache);
 /* Looks up or uploads. The result stays valid until an evict after a frame that did not use it. */
 pnb_result gpu_cache_mesh(struct gpu_cache *cache, const pnb_mesh *mesh, const struct gpu_mesh **out);
+/* mesh_is_closed of a mesh that was looked up in this frame; what it finds is kept. */
+bool gpu_cache_is_closed(struct gpu_cache *cache, const pnb_mesh *mesh);
 pnb_result gpu_cache_image(struct gpu_cache *cache, const pnb_texture *texture, const struct gpu_image **out);
 /* Frees what the last few frames did not use. */
 void gpu_cache_evict(struct gpu_cache *cache);

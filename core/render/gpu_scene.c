@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "gpu_scene.h"
-#include "../memory.h"
 #include "../gl/program.h"
+#include "../memory.h"
 #include "gpu_cache.h"
 
 #include <float.h>
@@ -14,6 +14,7 @@ struct draw {
     const struct gpu_mesh *mesh;
     const struct mesh_range *range;
     uint32_t material, instance;
+    bool solid; /* its instance is, once gpu_scene_find_solids has looked */
 };
 
 struct gpu_material {
@@ -29,13 +30,14 @@ struct gpu_material {
 struct gpu_scene {
     const struct gl *gl;
     struct gpu_cache cache;
-    GLuint instance_buffer;   /* instance_block of each drawn instance, in draw order */
+    GLuint instance_buffer; /* instance_block of each drawn instance, in draw order */
     uint32_t instance_count, draw_count, material_count;
     struct instance_block *instances;
-    struct box *bounds;   /* per instance, relative world */
-    uint32_t *flags;      /* per instance */
+    struct box *bounds;      /* per instance, relative world */
+    uint32_t *flags;         /* per instance */
     uint64_t *unshadowed_by; /* per instance */
     struct draw *draws;
+    bool solids_found; /* of this frame */
     struct gpu_material *materials;
     struct instance_block *visible; /* scratch of gpu_scene_draw: what goes to instance_buffer */
 };
@@ -66,6 +68,7 @@ static void free_frame_data(struct gpu_scene *scene) {
     scene->draws = NULL;
     scene->materials = NULL;
     scene->instance_count = scene->draw_count = scene->material_count = 0;
+    scene->solids_found = false;
 }
 
 void gpu_scene_destroy(struct gpu_scene **out) {
@@ -207,6 +210,17 @@ static int compare_draws(const void *first, const void *second) {
     return (a->instance > b->instance) - (a->instance < b->instance);
 }
 
+/* Whether light that meets the instance's front meets its back, too: a closed mesh whose faces all stop it. */
+static bool is_solid(struct gpu_scene *scene, const struct scene *from, const struct scene_instance *instance) {
+    const pnb_mesh *mesh = instance->mesh;
+    bool solid = gpu_cache_is_closed(&scene->cache, mesh);
+    for (uint32_t r = 0; r < mesh->range_count && solid; r++) {
+        const struct gpu_material *material = &scene->materials[material_of(from, instance, mesh->ranges[r].slot)];
+        solid = !material->translucent && !(material->flags & (PNB_MATERIAL_NO_SHADOW | PNB_MATERIAL_CULL_SHADOW));
+    }
+    return solid;
+}
+
 static pnb_result load_draws(struct gpu_scene *scene, const struct scene *from) {
     size_t count = 0;
     for (uint32_t i = 0; i < from->instance_count; i++)
@@ -225,10 +239,16 @@ static pnb_result load_draws(struct gpu_scene *scene, const struct scene *from) 
             return result;
         for (uint32_t r = 0; r < mesh->range_count; r++)
             scene->draws[scene->draw_count++] =
-                (struct draw){mesh, &mesh->ranges[r], material_of(from, instance, mesh->ranges[r].slot), i};
+                (struct draw){mesh, &mesh->ranges[r], material_of(from, instance, mesh->ranges[r].slot), i, false};
     }
     qsort(scene->draws, scene->draw_count, sizeof *scene->draws, compare_draws);
     return PNB_OK;
+}
+
+void gpu_scene_find_solids(struct gpu_scene *scene, const struct scene *from) {
+    for (uint32_t i = 0; i < scene->draw_count && !scene->solids_found; i++)
+        scene->draws[i].solid = is_solid(scene, from, &from->instances[scene->draws[i].instance]);
+    scene->solids_found = true;
 }
 
 pnb_result gpu_scene_update(struct gpu_scene *scene, struct frame *frame) {
@@ -262,7 +282,7 @@ static enum faces culled_faces(const struct draw *draw, const struct gpu_materia
                                const struct draw_programs *programs) {
     if (material->flags & programs->cull)
         return FACES_BACK;
-    return programs->back_faces && draw->mesh->closed && !material->translucent ? FACES_FRONT : FACES_NONE;
+    return programs->back_faces && draw->solid ? FACES_FRONT : FACES_NONE;
 }
 
 /* special: with the program for materials that need more than a base colour. */
@@ -304,7 +324,7 @@ static bool is_special(const struct gpu_material *material, const struct draw_pr
 }
 
 static bool is_same_call(const struct draw *a, const struct draw *b) {
-    return a->mesh == b->mesh && a->range == b->range && a->material == b->material;
+    return a->mesh == b->mesh && a->range == b->range && a->material == b->material && a->solid == b->solid;
 }
 
 pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hidden_by, uint64_t unshadowed_by,

@@ -14,6 +14,9 @@ void gpu_scene_destroy(struct gpu_scene **scene);
 /* Uploads what is new in the frame's scene, fills frame->casters, and frees what no frame used for a while. */
 pnb_result gpu_scene_update(struct gpu_scene *scene, struct frame *frame);
 
+/* Finds, once a frame, the instances whose mesh is closed and stops light everywhere. `from`: the scene of the update. */
+void gpu_scene_find_solids(struct gpu_scene *scene, const struct scene *from);
+
 /* Bytes of OpenGL memory it holds. */
 uint64_t gpu_scene_bytes(const struct gpu_scene *scene);
 
@@ -26,7 +29,7 @@ struct draw_programs {
     GLuint plain, special;
     enum casters casters;
     uint32_t cull;           /* the enum pnb_material_flags that hides back faces in this pass */
-    bool back_faces;         /* of opaque closed meshes only the back faces */
+    bool back_faces;         /* of solid bodies only the back faces; after gpu_scene_find_solids */
 };
 
 /* Draws every instance inside the view volume of `clip` (relative world to clip space) that lacks the flag

@@ -27,8 +27,7 @@ static void lanes_add_block(uint64_t lanes[LANES], const unsigned char *block) {
     }
 }
 
-/* Every bit of the result depends on every bit of the input. */
-static uint64_t word_finish(uint64_t word) {
+uint64_t content_key_mix(uint64_t word) {
     word = (word ^ (word >> 31)) * multipliers[0];
     word = (word ^ (word >> 29)) * multipliers[1];
     return word ^ (word >> 32);
@@ -38,7 +37,7 @@ void content_key_add(struct content_key *key, const void *data, size_t size) {
     const unsigned char *bytes = data;
     uint64_t lanes[LANES];
     for (size_t i = 0; i < LANES; i++) {
-        lanes[i] = word_finish(key->words[i % 2] + multipliers[i]);
+        lanes[i] = content_key_mix(key->words[i % 2] + multipliers[i]);
     }
     size_t left = size;
     for (; left >= BLOCK_SIZE; left -= BLOCK_SIZE, bytes += BLOCK_SIZE) {
@@ -51,8 +50,8 @@ void content_key_add(struct content_key *key, const void *data, size_t size) {
     }
     uint64_t forward = size, backward = ~(uint64_t)size;
     for (size_t i = 0; i < LANES; i++) {
-        forward = word_finish(forward ^ lanes[i]);
-        backward = word_finish(backward + lanes[LANES - 1 - i]);
+        forward = content_key_mix(forward ^ lanes[i]);
+        backward = content_key_mix(backward + lanes[LANES - 1 - i]);
     }
     key->words[0] = forward;
     key->words[1] = backward;

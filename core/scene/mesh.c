@@ -6,7 +6,6 @@
 
 #include <float.h>
 #include <inttypes.h>
-#include <string.h>
 
 pnb_mesh *mesh_allocate(const char *name) {
     pnb_mesh *mesh = memory_array(1, sizeof *mesh);
@@ -18,37 +17,6 @@ pnb_mesh *mesh_allocate(const char *name) {
         }
     }
     return mesh;
-}
-
-static uint64_t mix(uint64_t x) {
-    x = (x ^ x >> 32) * 0x9e3779b97f4a7c15u;
-    x = (x ^ x >> 29) * 0xbf58476d1ce4e5b9u;
-    return x ^ x >> 32;
-}
-
-static uint64_t position_hash(const float position[3]) {
-    uint32_t bits[3];
-    for (int i = 0; i < 3; i++) {
-        const float value = position[i] + 0.0f; /* one zero */
-        memcpy(&bits[i], &value, sizeof value);
-    }
-    return mix(mix((uint64_t)bits[0] << 32 | bits[1]) + bits[2]);
-}
-
-/* Whether every edge, known by the places of its ends, is walked as often in one direction as in the other. The hashes of
- * the edges add up to 0 then, those of opposite directions with opposite signs, and by chance in one of 2^64 meshes. */
-static bool mesh_is_closed(const pnb_mesh *mesh) {
-    uint64_t sum = 0;
-    for (uint32_t i = 0; i < mesh->index_count; i += 3) {
-        uint64_t ends[3];
-        for (int k = 0; k < 3; k++)
-            ends[k] = position_hash(mesh->vertices[mesh->indices[i + (uint32_t)k]].position);
-        for (int k = 0; k < 3; k++) {
-            const uint64_t a = ends[k], b = ends[(k + 1) % 3];
-            sum += mix(3 * a + b) - mix(3 * b + a);
-        }
-    }
-    return mesh->index_count > 0 && sum == 0;
 }
 
 void mesh_finish(pnb_mesh *mesh) {
@@ -63,7 +31,6 @@ void mesh_finish(pnb_mesh *mesh) {
             mesh->bounds[1][i] = value > mesh->bounds[1][i] ? value : mesh->bounds[1][i];
         }
     }
-    mesh->closed = mesh_is_closed(mesh);
     mesh->content = (struct content_key){{0}};
     content_key_add(&mesh->content, mesh->vertices, mesh->vertex_count * sizeof *mesh->vertices);
     content_key_add(&mesh->content, mesh->indices, mesh->index_count * sizeof *mesh->indices);

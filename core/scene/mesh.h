@@ -14,7 +14,9 @@
 pnb_mesh *mesh_allocate(const char *name);
 /* Fills vertices, indices, ranges and the warning from a checked description. */
 pnb_result mesh_build(const pnb_mesh_desc *from, pnb_mesh *mesh);
-/* Computes bounds and content key of a filled mesh, and whether it is closed. */
+/* Computes bounds and content key of a filled mesh. */
 void mesh_finish(pnb_mesh *mesh);
+/* Whether every edge of a finished mesh joins its triangles, and their fronts are outside. Reads the whole mesh. */
+bool mesh_is_closed(const pnb_mesh *mesh);
 
 #endif

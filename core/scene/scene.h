@@ -37,7 +37,6 @@ struct pnb_mesh {
     struct mesh_range *ranges;
     uint32_t vertex_count, index_count, range_count;
     float bounds[2][3];         /* minimum, maximum of the used positions; min > max if there are none */
-    bool closed;                /* what enters it leaves it: see mesh_is_closed */
 };
 
 struct pnb_texture {

@@ -103,8 +103,9 @@ static const struct parameter parameters[] = {
                           .maximum = 3},
     [FACES] = {.name = "faces",
                .label = "Faces",
-               .description = "ALL: every surface. BACK: of opaque closed meshes only those turned away from the light: "
-                              "shorter lists, but light leaks where a body touches what it stands on",
+               .description =
+                   "ALL: every surface. BACK: of solid bodies only what is turned away from the light, as in "
+                   "the paper; fewer surfaces, but bodies that stand on something lose most of their shadow",
                .unit = "",
                .type = PNB_ENUM,
                .maximum = 1,

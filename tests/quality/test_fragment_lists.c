@@ -33,10 +33,10 @@ struct lists {
 struct stage {
     pnb_mesh *meshes[SHEETS];
     pnb_instance instances[SHEETS];
-    pnb_material materials[SHEETS];
-    uint32_t slots[SHEETS];
-    struct sheet sheets[SHEETS];
-    uint32_t count;
+    pnb_material materials[2 * SHEETS]; /* two to an instance, whose slots they are */
+    uint32_t slots[2 * SHEETS];
+    struct sheet sheets[SHEETS]; /* what the lists should hold */
+    uint32_t count, sheet_count;
 };
 
 /* The map covers 0..1 in q, and light space is the world: orthographic. */
@@ -46,6 +46,19 @@ static struct light_views stage_views(void) {
         .rect = {0, 0, 1, 1}, .near_depth = 1, .far_depth = 9, .perspective = 0, .texel = 1.0f / SIDE};
     glm_mat4_identity(views.views[0].from_world);
     return views;
+}
+
+/* The instance of a mesh, scaled by 1 or -1 and then moved along x, with two opaque materials. */
+static void place(struct stage *stage, uint32_t i, float x, float mirror) {
+    stage->instances[i] = (pnb_instance){.struct_size = sizeof(pnb_instance),
+                                         .mesh = stage->meshes[i],
+                                         .first_slot = 2 * i,
+                                         .slot_count = 2,
+                                         .matrix = {mirror, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, 0, 1}};
+    for (uint32_t slot = 2 * i; slot < 2 * i + 2; slot++) {
+        stage->materials[slot] = (pnb_material){.struct_size = sizeof(pnb_material)};
+        stage->slots[slot] = slot;
+    }
 }
 
 static void add_sheet(struct stage *stage, struct sheet sheet) {
@@ -59,14 +72,9 @@ static void add_sheet(struct stage *stage, struct sheet sheet) {
     desc.positions.data = positions;
     desc.triangles.data = triangles;
     CHECK_RESULT(pnb_mesh_create(&desc, &stage->meshes[i]), PNB_OK);
-    stage->instances[i] = (pnb_instance){.struct_size = sizeof(pnb_instance),
-                                         .mesh = stage->meshes[i],
-                                         .first_slot = i,
-                                         .slot_count = 1,
-                                         .matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}};
-    stage->materials[i] = (pnb_material){.struct_size = sizeof(pnb_material), .transparency = 1 - sheet.opacity};
-    stage->slots[i] = i;
-    stage->sheets[i] = sheet;
+    place(stage, i, 0, 1);
+    stage->materials[2 * i].transparency = 1 - sheet.opacity;
+    stage->sheets[stage->sheet_count++] = sheet;
 }
 
 static void stage_free(struct stage *stage) {
@@ -92,7 +100,7 @@ static void base_lists(const struct stage *stage, struct lists *lists) {
     lists_create(lists, SIDE, 0);
     for (int i = 0; i < SIDE * SIDE; i++) {
         struct list *list = &lists->texels[i];
-        for (uint32_t s = 0; s < stage->count; s++) {
+        for (uint32_t s = 0; s < stage->sheet_count; s++) {
             const struct sheet *sheet = &stage->sheets[s];
             if (i % SIDE >= sheet->x0 && i % SIDE < sheet->x1 && i / SIDE >= sheet->y0 && i / SIDE < sheet->y1)
                 list->fragments[list->count++] = (struct fragment){sheet->depth, sheet->opacity};
@@ -218,12 +226,12 @@ static double total_opacity(const struct lists *lists) {
 
 /* ---- Tests ---- */
 
-static bool make_lists(struct bench *bench, const struct stage *stage, const struct fragment_filter *filter,
-                       struct fragment_lists *lists) {
+static bool make_lists(struct bench *bench, const struct stage *stage, bool back_faces,
+                       const struct fragment_filter *filter, struct fragment_lists *lists) {
     const pnb_scene from = {.struct_size = sizeof from,
                             .instance_count = stage->count,
-                            .material_count = stage->count,
-                            .slot_count = stage->count,
+                            .material_count = 2 * stage->count,
+                            .slot_count = 2 * stage->count,
                             .instances = stage->instances,
                             .materials = stage->materials,
                             .slots = stage->slots,
@@ -237,8 +245,10 @@ static bool make_lists(struct bench *bench, const struct stage *stage, const str
     struct gl_texture map = {0};
     CHECK_RESULT(gpu_scene_update(bench->renderer->scene, &bench->frame), PNB_OK);
     CHECK_RESULT(pass_shadow_map(&bench->frame, &views, TRANSLUCENCY_ANY, &map), PNB_OK);
-    bool good = CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, CASTERS_ALL, false, 0, &map, "test", lists), PNB_OK) &&
-                CHECK_RESULT(pass_fragment_filter(&bench->frame, &views, filter, SIDE, "test", lists), PNB_OK);
+    bool good =
+        CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, CASTERS_ALL, back_faces, 0, &map, "test", lists),
+                     PNB_OK) &&
+        CHECK_RESULT(pass_fragment_filter(&bench->frame, &views, filter, SIDE, "test", lists), PNB_OK);
     gl_texture_free(&bench->backend.gl, &map);
     memory_free(bench->frame.casters);
     bench->frame.casters = NULL;
@@ -270,7 +280,7 @@ static void levels_match(struct bench *bench, int stack_side, int mode) {
         .level_count = 6, .stack_side = stack_side, .accumulation = mode, .merge_distance = 2, .light_size = 1e-3f};
     struct lists below, expected, found;
     base_lists(&stage, &below);
-    if (make_lists(bench, &stage, &filter, &lists)) {
+    if (make_lists(bench, &stage, false, &filter, &lists)) {
         read_level(&bench->backend.gl, &lists, 0, &found);
         CHECK_INT(differences(&below, &found), 0);
         free(found.texels);
@@ -300,7 +310,7 @@ static void one_texel(struct bench *bench, int stack_side) {
     add_sheet(&stage, (struct sheet){24, 40, 25, 41, 4, 1});
     const struct fragment_filter filter = {
         .level_count = 7, .stack_side = stack_side, .accumulation = 1, .merge_distance = 2, .light_size = 1e-3f};
-    if (!make_lists(bench, &stage, &filter, &lists))
+    if (!make_lists(bench, &stage, false, &filter, &lists))
         return;
     for (uint32_t i = 0; i < lists.level_count; i++) {
         const struct fragment_level *level = &lists.levels[i];
@@ -345,7 +355,7 @@ static void opacity_is_conserved(struct bench *bench, int mode) {
                   (struct sheet){i, 2 * (i % 7), i + 1, SIDE - i, 2 + 0.1f * (float)i, 0.5f + 0.01f * (float)i});
     const struct fragment_filter filter = {
         .level_count = 7, .stack_side = 0, .accumulation = mode, .merge_distance = 20, .light_size = 1e-3f};
-    if (!make_lists(bench, &stage, &filter, &lists))
+    if (!make_lists(bench, &stage, false, &filter, &lists))
         return;
     double base = 0, worst = 0;
     for (uint32_t i = 0; i < lists.level_count; i++) {
@@ -365,6 +375,66 @@ static void opacity_is_conserved(struct bench *bench, int mode) {
     stage_free(&stage);
 }
 
+enum body { SOLID, MIRRORED, INSIDE_OUT, OPEN, CLEAR_BACK, CULLED_BACK, BODIES };
+
+#define BODY_SIDE 8 /* texels */
+
+/* A box between the depths 3 and 5, whose far side has the second material. */
+static void add_box(struct stage *stage, int x, enum body body) {
+    static const uint32_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    static const int32_t slots[12] = {[10] = 1, [11] = 1};
+    float positions[8][3];
+    uint32_t triangles[12][3];
+    for (uint32_t v = 0; v < 8; v++)
+        for (uint32_t axis = 0; axis < 3; axis++)
+            positions[v][axis] = axis < 2 ? (float)(v >> axis & 1u) * BODY_SIDE / SIDE : v & 4u ? 5.0f : 3.0f;
+    for (uint32_t t = 0; t < 12; t++) {
+        const uint32_t *face = faces[t / 2], second = face[1 + t % 2], third = face[2 + t % 2];
+        triangles[t][0] = face[0];
+        triangles[t][1] = body == INSIDE_OUT ? third : second;
+        triangles[t][2] = body == INSIDE_OUT ? second : third;
+    }
+    const uint32_t i = stage->count++, left_out = body == OPEN ? 2 : 0; /* a side that the light sees edge-on */
+    pnb_mesh_desc desc = PNB_INIT(pnb_mesh_desc);
+    desc.vertex_count = desc.corner_count = 8;
+    desc.triangle_count = 12 - left_out;
+    desc.positions.data = positions;
+    desc.triangles.data = triangles[left_out];
+    desc.polygon_materials.data = slots + left_out;
+    CHECK_RESULT(pnb_mesh_create(&desc, &stage->meshes[i]), PNB_OK);
+    place(stage, i, (float)(x + (body == MIRRORED ? BODY_SIDE : 0)) / SIDE, body == MIRRORED ? -1 : 1);
+    stage->materials[2 * i + 1].transparency = body == CLEAR_BACK ? 0.5f : 0;
+    stage->materials[2 * i + 1].flags = body == CULLED_BACK ? PNB_MATERIAL_CULL_SHADOW : 0;
+}
+
+/* Front faces are left out of bodies that stop the light at their backs, too, and of no others. */
+static void front_faces_are_left_out(struct bench *bench) {
+    struct stage stage = {0};
+    struct fragment_lists lists = {0};
+    for (enum body body = SOLID; body < BODIES; body++) {
+        const int x = (BODY_SIDE + 1) * (int)body;
+        add_box(&stage, x, body);
+        const bool front = body > MIRRORED, back = body != CULLED_BACK;
+        if (front)
+            stage.sheets[stage.sheet_count++] = (struct sheet){x, 0, x + BODY_SIDE, BODY_SIDE, 3, 1};
+        if (back)
+            stage.sheets[stage.sheet_count++] =
+                (struct sheet){x, 0, x + BODY_SIDE, BODY_SIDE, 5, body == CLEAR_BACK ? 0.5f : 1};
+    }
+    const struct fragment_filter filter = {.level_count = 1, .merge_distance = 2, .light_size = 1e-3f};
+    struct lists expected, found;
+    base_lists(&stage, &expected);
+    if (make_lists(bench, &stage, true, &filter, &lists)) {
+        read_level(&bench->backend.gl, &lists, 0, &found);
+        CHECK_INT(differences(&expected, &found), 0);
+        free(found.texels);
+    }
+    free(expected.texels);
+    fragment_lists_free(&bench->backend.gl, &lists);
+    stage_free(&stage);
+}
+
 int main(void) {
     quality_open();
     static struct bench bench;
@@ -374,6 +444,7 @@ int main(void) {
             levels_match(&bench, 16, mode);
             opacity_is_conserved(&bench, mode);
         }
+        front_faces_are_left_out(&bench);
         one_texel(&bench, 0);
         one_texel(&bench, 16);
         bench_close(&bench);

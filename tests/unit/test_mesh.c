@@ -153,9 +153,15 @@ static bool cube_is_closed(const struct cube *cube, uint32_t triangles) {
     pnb_mesh_desc desc = cube->desc;
     desc.triangle_count = triangles;
     pnb_mesh *mesh = create(&desc);
-    const bool closed = mesh->closed;
+    const bool closed = mesh_is_closed(mesh);
     pnb_mesh_destroy(&mesh);
     return closed;
+}
+
+static void cube_turn(struct cube *cube, uint32_t triangle) {
+    const uint32_t kept = cube->triangles[triangle][1];
+    cube->triangles[triangle][1] = cube->triangles[triangle][2];
+    cube->triangles[triangle][2] = kept;
 }
 
 /* By the places of the edges' ends: split corners do not open a mesh, a missing or a turned triangle does. */
@@ -170,10 +176,14 @@ static void closed_meshes_are_known(void **state) {
         cube.positions[v][2] = v & 4u ? 1.0f : (v & 1u ? -0.0f : 0.0f); /* one zero and the other */
     }
     assert_true(cube_is_closed(&cube, 12));
-    const uint32_t kept = cube.triangles[5][1];
-    cube.triangles[5][1] = cube.triangles[5][2];
-    cube.triangles[5][2] = kept;
+    cube_turn(&cube, 5);
     assert_false(cube_is_closed(&cube, 12));
+    for (uint32_t t = 0; t < 12; t++) {
+        if (t != 5) {
+            cube_turn(&cube, t);
+        }
+    }
+    assert_false(cube_is_closed(&cube, 12)); /* inside out */
 }
 
 /* ---- Welding ---- */
