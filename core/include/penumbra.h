@@ -164,9 +164,9 @@ typedef struct pnb_mesh_desc {
  * creating one again for an unchanged object uploads nothing. The caller owns *mesh; jobs keep what they use. */
 PNB_API pnb_result pnb_mesh_create(const pnb_mesh_desc *desc, pnb_mesh **mesh);
 PNB_API void pnb_mesh_destroy(pnb_mesh **mesh);
-/* Curves as thin tubes, such as hair: a mesh of prisms of three sides, as wide on average as a round tube, with its
- * normals. Curve i has the points first_points[i] .. first_points[i + 1] - 1. Its uv is that of the curve everywhere.
- */
+/* Curves as thin tubes, such as hair, smooth through their points (Catmull-Rom): a mesh of prisms of five sides, of three
+ * where there are many points, as wide on average as a round tube, with its normals. Curve i has the points
+ * first_points[i] .. first_points[i + 1] - 1. Its uv is that of the curve everywhere. */
 typedef struct pnb_strands_desc {
     uint32_t struct_size;
     uint32_t point_count;

@@ -67,7 +67,7 @@ static void strands_keep_their_width(void **state) {
     for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
         const float points[2][3] = {{0, 0, 0}, {ends[i][0], ends[i][1], ends[i][2]}};
         pnb_mesh *mesh = strands(points, 2, (float[2]){0.1f, 0.1f}, (uint32_t[1]){0}, 1);
-        assert_int_equal(mesh->index_count, 3 * 6);
+        assert_int_equal(mesh->index_count, 3 * 10);
         assert_true(fabs(surface_of(mesh) - 2 * PI * 0.1 * 2) < 1e-4);
         assert_true(volume_of(mesh) > 0);
         pnb_mesh_destroy(&mesh);
@@ -80,10 +80,36 @@ static void odd_strands_are_drawn(void **state) {
     static const float points[][3] = {{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {1, 0, 1}, {5, 5, 5}, {0, 2, 0}, {0, 3, 0}};
     static const float radii[] = {0.1f, 0.1f, 0.1f, 0.1f, 0.1f, 0.1f, 0};
     pnb_mesh *mesh = strands(points, 7, radii, (uint32_t[]){0, 4, 5}, 3);
-    assert_int_equal(mesh->index_count, 3 * 6 * 3); /* two segments, none, one */
+    assert_int_equal(mesh->index_count, 3 * 10 * 3); /* two segments, none, one */
     for (uint32_t i = 0; i < mesh->vertex_count; i++) {
         assert_true(isfinite(mesh->vertices[i].position[0]));
     }
+    pnb_mesh_destroy(&mesh);
+}
+
+/* A quarter of a circle of radius 1 by its ends and two points in between, with neighbours beyond: the walls' corners
+ * lie on the tube about the circle, also between the points, where straight lines would leave it by .034. */
+static void strands_are_smooth(void **state) {
+    (void)state;
+    float points[6][3] = {{0}};
+    for (int i = 0; i < 6; i++) {
+        const double angle = PI / 6 * (i - 1);
+        points[i][0] = (float)cos(angle), points[i][1] = (float)sin(angle);
+    }
+    static const float radii[6] = {0.01f, 0.01f, 0.01f, 0.01f, 0.01f, 0.01f};
+    pnb_mesh *mesh = strands(points, 6, radii, (uint32_t[1]){0}, 1);
+    uint32_t between = 0;
+    for (uint32_t i = 0; i < mesh->vertex_count; i++) {
+        const float *at = mesh->vertices[i].position;
+        const double angle = atan2((double)at[1], (double)at[0]) * 6 / PI;
+        const double off = hypot(hypot((double)at[0], (double)at[1]) - 1, (double)at[2]);
+        if (angle < 0 || angle > 3) {
+            continue; /* the end segments bend less */
+        }
+        between += fabs(angle - round(angle)) > 0.2;
+        assert_true(fabs(off - 0.01) < 0.003);
+    }
+    assert_true(between >= 3 * 5);
     pnb_mesh_destroy(&mesh);
 }
 
@@ -165,9 +191,10 @@ static void colors_are_kept(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(strands_keep_their_width),       cmocka_unit_test(odd_strands_are_drawn),
-        cmocka_unit_test(points_keep_their_size),         cmocka_unit_test(nothing_is_an_empty_mesh),
-        cmocka_unit_test(broken_descriptions_are_errors), cmocka_unit_test(colors_are_kept),
+        cmocka_unit_test(strands_keep_their_width), cmocka_unit_test(strands_are_smooth),
+        cmocka_unit_test(odd_strands_are_drawn),    cmocka_unit_test(points_keep_their_size),
+        cmocka_unit_test(nothing_is_an_empty_mesh), cmocka_unit_test(broken_descriptions_are_errors),
+        cmocka_unit_test(colors_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
