@@ -348,7 +348,9 @@ vec3 technique_visibility(receiver r) {
     if (known != 0.5)
         return vec3(known);
     float depth;
-    if (!find_blockers(r, rectangle(r.center - extent, r.center + extent), depths.x, depth))
+    // Casters very near to the light make kernels larger than the map. Its parts must not all lie outside.
+    rectangle search = rectangle(max(r.center - extent, 0.0), min(r.center + extent, vec2(r.map_size)));
+    if (any(lessThanEqual(search.high, search.low)) || !find_blockers(r, search, depths.x, depth))
         return vec3(1.0);
     scale = max(kernel_scale(r, depth), 0.0);
     return vec3(KERNEL == RECTANGLE ? filter_box(r, scale) : filter_slabs(r, scale));

@@ -22,8 +22,9 @@ void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists) {
     lists->count = 0;
 }
 
-static pnb_result use_programs(struct frame *frame, const struct light_view *view, bool collect, enum casters casters,
-                               int layer, int side, const mat4 clip, GLuint programs[2]) {
+static pnb_result use_programs(struct frame *frame, const struct light_views *views, bool collect,
+                               enum casters casters, int layer, int side, const mat4 clip, GLuint programs[2]) {
+    const struct light_view *view = &views->views[layer];
     static const char *const defines[2][2] = {{NULL, "#define SPECIAL\n"},
                                               {"#define COLLECT\n", "#define COLLECT\n#define SPECIAL\n"}};
     const struct gl *gl = frame->gl;
@@ -31,12 +32,14 @@ static pnb_result use_programs(struct frame *frame, const struct light_view *vie
         const struct program_desc desc = {.vertex = "pass_shadow_map.vert",
                                           .fragment = "pass_fragments.frag",
                                           .defines = {fragment_defines(frame->scene), defines[collect][special],
-                                                      view->perspective != 0.0f ? "#define PERSPECTIVE\n" : NULL}};
+                                                      view->perspective != 0.0f ? "#define PERSPECTIVE\n" : NULL,
+                                                      views->clip_behind ? "#define CLIP_BEHIND\n" : NULL}};
         pnb_result result = program_use(&frame->renderer->programs, &desc, &programs[special]);
         if (result != PNB_OK)
             return result;
         program_set_mat4(gl, programs[special], "projection", (const float *)clip);
         program_set_vec2(gl, programs[special], "depth_planes", (const float[2]){view->near_depth, view->far_depth});
+        program_set_vec4(gl, programs[special], "front", views->front);
         program_set_int(gl, programs[special], "layer", layer);
         program_set_int(gl, programs[special], "side", side);
         program_set_int(gl, programs[special], "translucent_only", casters == CASTERS_TRANSLUCENT);
@@ -45,7 +48,7 @@ static pnb_result use_programs(struct frame *frame, const struct light_view *vie
 }
 
 /* Counts or collects the fragments of one view. */
-static pnb_result draw_view(struct frame *frame, const struct light_view *view, bool collect, enum casters casters,
+static pnb_result draw_view(struct frame *frame, const struct light_views *views, bool collect, enum casters casters,
                             bool back_faces, const struct gl_texture *map, int layer) {
     struct renderer *renderer = frame->renderer;
     const struct gl_target target = {.depth = map, .layer = layer};
@@ -53,10 +56,10 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
     if (result != PNB_OK)
         return result;
     mat4 projection, clip;
-    light_view_projection(view, projection);
-    glm_mat4_mul(projection, (vec4 *)view->from_world, clip);
+    light_view_projection(&views->views[layer], projection);
+    glm_mat4_mul(projection, (vec4 *)views->views[layer].from_world, clip);
     GLuint programs[2];
-    if ((result = use_programs(frame, view, collect, casters, layer, map->width, clip, programs)) != PNB_OK)
+    if ((result = use_programs(frame, views, collect, casters, layer, map->width, clip, programs)) != PNB_OK)
         return result;
     const struct draw_programs draw = {programs[0], programs[1], casters, PNB_MATERIAL_CULL_SHADOW, back_faces};
     return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, (uint64_t)1 << frame->light, &draw);
@@ -69,8 +72,11 @@ static pnb_result draw_views(struct frame *frame, const struct light_views *view
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
     fragment_lists_bind(gl, lists);
+    if (views->clip_behind)
+        gl->Enable(GL_CLIP_DISTANCE0);
     for (int i = 0; i < views->count && result == PNB_OK; i++)
-        result = draw_view(frame, &views->views[i], collect, casters, back_faces, map, i);
+        result = draw_view(frame, views, collect, casters, back_faces, map, i);
+    gl->Disable(GL_CLIP_DISTANCE0);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     timer_end(&frame->renderer->timer, collect ? lists->fragments.bytes : lists->heads.bytes);
     return result;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "passes.h"
 
-static pnb_result draw_view(struct frame *frame, const struct light_view *view, enum translucency translucency,
+static pnb_result draw_view(struct frame *frame, const struct light_views *views, enum translucency translucency,
                             const struct gl_texture *map, int layer) {
+    const struct light_view *view = &views->views[layer];
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
     const struct gl_target target = {.depth = map, .layer = layer};
@@ -15,17 +16,19 @@ static pnb_result draw_view(struct frame *frame, const struct light_view *view, 
     light_view_projection(view, projection);
     glm_mat4_mul(projection, (vec4 *)view->from_world, clip);
     const char *const perspective = view->perspective != 0.0f ? "#define PERSPECTIVE\n" : NULL;
+    const char *const behind = views->clip_behind ? "#define CLIP_BEHIND\n" : NULL;
     const struct program_desc descs[] = {
-        {.vertex = "pass_shadow_map.vert", .fragment = "pass_shadow_map.frag", .defines = {perspective}},
+        {.vertex = "pass_shadow_map.vert", .fragment = "pass_shadow_map.frag", .defines = {perspective, behind}},
         {.vertex = "pass_shadow_map.vert",
          .fragment = "pass_shadow_map.frag",
-         .defines = {perspective, "#define SPECIAL\n"}}};
+         .defines = {perspective, behind, "#define SPECIAL\n"}}};
     GLuint programs[2];
     for (int i = 0; i < 2; i++) {
         if ((result = program_use(&renderer->programs, &descs[i], &programs[i])) != PNB_OK)
             return result;
         program_set_mat4(gl, programs[i], "projection", (const float *)clip);
         program_set_vec2(gl, programs[i], "depth_planes", (const float[2]){view->near_depth, view->far_depth});
+        program_set_vec4(gl, programs[i], "front", views->front);
         program_set_int(gl, programs[i], "translucency", (int)translucency);
         program_set_int(gl, programs[i], "sample_index", (int)frame->sample);
     }
@@ -44,8 +47,11 @@ pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
         return result;
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthMask(GL_TRUE);
+    if (views->clip_behind)
+        gl->Enable(GL_CLIP_DISTANCE0);
     for (int i = 0; i < views->count && result == PNB_OK; i++)
-        result = draw_view(frame, &views->views[i], translucency, map, i);
+        result = draw_view(frame, views, translucency, map, i);
+    gl->Disable(GL_CLIP_DISTANCE0);
     timer_end(&renderer->timer, gl_texture_bytes(map));
     return result;
 }

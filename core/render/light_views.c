@@ -127,6 +127,18 @@ static float kernel_extent(const struct emitter *emitter, float blocker, float r
     return half * fmaxf(1.0f / fmaxf(blocker, 1e-6f) - 1.0f / fmaxf(receiver, 1e-6f), 0.0f);
 }
 
+/* Whether a box lies behind an emitter that shines to one side only. */
+static bool is_behind(const struct box *box, const struct emitter *emitter) {
+    for (int corner = 0; corner < 8; corner++) {
+        vec3 point;
+        box_corner(box, corner, point);
+        glm_vec3_sub(point, (float *)emitter->position, point);
+        if (emitter->type != PNB_LIGHT_AREA || glm_vec3_dot(point, (float *)emitter->frame[2]) > 0.0f)
+            return false;
+    }
+    return true;
+}
+
 /* What the map must show: see the top of this file. */
 static struct range needed_range(const struct emitter *emitter, const struct light_view *view,
                                  const struct range *receivers, const struct box *casters, size_t caster_count,
@@ -134,7 +146,7 @@ static struct range needed_range(const struct emitter *emitter, const struct lig
     struct range needed = empty_range;
     for (size_t i = 0; i < caster_count; i++) {
         struct range range = box_range(&casters[i], view, limit);
-        if (range_is_empty(&range) || range.near_depth >= receivers->far_depth)
+        if (range_is_empty(&range) || range.near_depth >= receivers->far_depth || is_behind(&casters[i], emitter))
             continue;
         const float nearest = fmaxf(range.near_depth, NEAREST * receivers->far_depth);
         const float margin = kernel_extent(emitter, emitter->type == PNB_LIGHT_SUN ? range.near_depth : nearest,
@@ -205,6 +217,9 @@ static bool one_view_suffices(const struct emitter *emitter, const struct box *r
 void light_views_fit(struct light_views *views, const struct emitter *emitter, const struct box *receivers,
                      size_t receiver_count, const struct box *casters, size_t caster_count, int map_size) {
     *views = (struct light_views){.single = one_view_suffices(emitter, receivers, receiver_count)};
+    views->clip_behind = emitter->type == PNB_LIGHT_AREA && !views->single;
+    glm_vec4((float *)emitter->frame[2], -glm_vec3_dot((float *)emitter->frame[2], (float *)emitter->position),
+             views->front);
     const int face_count = views->single ? 1 : emitter->type == PNB_LIGHT_POINT ? 6 : 5;
     for (int face = 0; face < MAX_LIGHT_VIEWS; face++) {
         views->layer_of_face[face] = -1;
