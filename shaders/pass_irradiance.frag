@@ -7,6 +7,7 @@
 
 uniform sampler2D gbuffer_depth, gbuffer_normal;
 uniform sampler2D visibility; // rgb = visibility times weight, a = weight
+uniform vec3 shadow_color;    // what arrives where the light is hidden
 #ifdef LINKS
 uniform usampler2D gbuffer_links;
 uniform int light_number;
@@ -40,6 +41,7 @@ void main() {
     vec3 irradiance = vec3(0.0), visible = vec3(1.0);
     if (depth != 0.0 && v.a > 0.0) {
         visible = v.rgb / v.a;
+        visible += (1.0 - visible) * shadow_color;
         irradiance = light.emission.rgb * light_irradiance(position, normal);
 #ifdef LINKS
         uvec2 unlit_by = texelFetch(gbuffer_links, pixel, 0).xy;

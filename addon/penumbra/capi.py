@@ -6,7 +6,7 @@ import os
 from ctypes import (POINTER, byref, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_uint32, c_uint64,
                     c_void_p, sizeof)
 
-API_VERSION = 4
+API_VERSION = 5
 
 OK, TIMEOUT = 0, 1
 INVALID_ARGUMENT, NO_BACKEND, UNSUPPORTED, OUT_OF_MEMORY, CANCELLED, CONTEXT_LOST = -1, -2, -3, -4, -5, -6
@@ -97,7 +97,8 @@ class Instance(_Struct):
 class Light(_Struct):
     _fields_ = [("struct_size", c_uint32), ("flags", c_uint32), ("type", c_int), ("shape", c_int), ("name", c_char_p),
                 ("matrix", c_float * 16), ("emission", c_float * 3), ("size", c_float * 2), ("radius", c_float),
-                ("angle", c_float), ("spot_angle", c_float), ("spot_blend", c_float), ("spread", c_float)]
+                ("angle", c_float), ("spot_angle", c_float), ("spot_blend", c_float), ("spread", c_float),
+                ("technique", c_char_p), ("shadow_map_size", c_uint32), ("shadow_color", c_float * 3)]
 
 
 class Camera(_Struct):

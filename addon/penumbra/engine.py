@@ -103,6 +103,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
         exported.set_camera(camera, self.camera_model_matrix(camera), self.camera_shift_x(camera), width, height,
                             render.pixel_aspect_y / render.pixel_aspect_x)
         values = settings.for_still(depsgraph, width, height)
+        exported.use_own_techniques(settings.forced_technique() is None)
         path = CaptureRequest.path or capture_path(depsgraph)
         if path:
             export.write_capture(path, exported.scene, values)

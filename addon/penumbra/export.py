@@ -76,6 +76,11 @@ class SceneExport:
     def set_camera(self, ob, matrix, shift_x, width, height, aspect):
         camera.fill_camera(self.scene.camera, ob, matrix, shift_x, width, height, aspect, self.warnings)
 
+    def use_own_techniques(self, used):
+        """Whether lights have the techniques of their own, or all the settings'."""
+        for target, light in zip(self.scene.lights[:self.scene.light_count], self._lights):
+            target.technique = light.technique if used else None
+
     # ---- Instances ----
 
     def _add_instances(self, depsgraph):

@@ -3,8 +3,9 @@
 
 from math import pi, sqrt, tan
 
-from . import capi, compat, nodes
+from . import capi, compat, nodes, props
 
+SMALLEST_MAP = 16   # texels per side that the library allows
 _TYPES = {'AREA': capi.AREA, 'POINT': capi.POINT, 'SPOT': capi.SPOT, 'SUN': capi.SUN}
 
 
@@ -19,6 +20,15 @@ def fill_light(target, ob, matrix, warnings):
     color = _color(light, ob.name, warnings)
     strength = _STRENGTH[light.type](target, light, matrix, ob.name, warnings)
     target.emission[:] = [channel * light.energy * strength for channel in color]
+    _fill_overrides(target, light.penumbra)
+
+
+def _fill_overrides(target, options):
+    if options.technique != props.AS_SCENE:
+        target.technique = options.technique.encode()
+    if options.shadow_map_size:
+        target.shadow_map_size = max(options.shadow_map_size, SMALLEST_MAP)
+    target.shadow_color[:] = options.shadow_color
 
 
 def column_major(matrix):

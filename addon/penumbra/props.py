@@ -12,6 +12,8 @@ from . import capi
 from .command_line import UsageError
 
 DEFAULT_TECHNIQUE = 'PCSS'
+# A light's technique that is not its own.
+AS_SCENE = 'SCENE'
 
 
 class PenumbraPreferences(AddonPreferences):
@@ -75,9 +77,28 @@ def _technique_class(info, parameters):
     return type(f"Penumbra{info.id.decode()}Settings", (PropertyGroup,), {'__annotations__': annotations})
 
 
+def _technique_items(table):
+    return [(info.id.decode(), info.label.decode(), info.description.decode(), technique_number(info.id.decode()))
+            for info, _parameters in table]
+
+
+def _light_class(table):
+    annotations = {
+        'technique': EnumProperty(
+            name="Technique", description="How this light's shadow is made",
+            items=[(AS_SCENE, "As Scene", "As Render Properties say", 0), *_technique_items(table)]),
+        'shadow_map_size': IntProperty(
+            name="Shadow Map Size", default=0, min=0, max=16384, subtype='PIXEL',
+            description="Texels per side of this light's shadow maps, 16 or more. 0: as the scene's"),
+        'shadow_color': FloatVectorProperty(
+            name="Shadow Colour", size=3, subtype='COLOR', min=0.0, max=1.0,
+            description="The share of this light that arrives in its full shadow. Black: none, as in nature"),
+    }
+    return type('PenumbraLightSettings', (PropertyGroup,), {'__annotations__': annotations})
+
+
 def _scene_class(table, technique_classes):
-    items = [(info.id.decode(), info.label.decode(), info.description.decode(), technique_number(info.id.decode()))
-             for info, _parameters in table]
+    items = _technique_items(table)
     identifiers = [item[0] for item in items]
     annotations = {
         'technique': EnumProperty(
@@ -129,11 +150,17 @@ def technique(settings, identifier=None):
     return found
 
 
-def parameter_values(settings, row):
-    """[(name, number)] of a technique's parameters."""
+def parameter_values(settings, row, of_lights=False):
+    """[(name, number)] of a technique's parameters; of techniques that lights have by themselves, qualified."""
     info, parameters = row
     group = getattr(settings, info.id.decode().lower())
-    return [(parameter.name.decode(), _number(group, parameter)) for parameter in parameters]
+    prefix = info.id.decode() + '.' if of_lights else ''
+    return [(prefix + parameter.name.decode(), _number(group, parameter)) for parameter in parameters]
+
+
+def light_techniques():
+    """Identifiers of what lights of the file have by themselves."""
+    return sorted({light.penumbra.technique for light in bpy.data.lights} - {AS_SCENE})
 
 
 def _number(group, parameter):
@@ -149,16 +176,19 @@ _classes = []
 def register():
     table = capi.library().techniques()
     technique_classes = [_technique_class(*row) for row in table]
-    _classes.extend([PenumbraPreferences, PenumbraViewLayerSettings, PenumbraObjectSettings, *technique_classes,
-                     _scene_class(table, technique_classes)])
+    light_class = _light_class(table)
+    _classes.extend([PenumbraPreferences, PenumbraViewLayerSettings, PenumbraObjectSettings, light_class,
+                     *technique_classes, _scene_class(table, technique_classes)])
     for cls in _classes:
         bpy.utils.register_class(cls)
     bpy.types.Scene.penumbra = PointerProperty(type=_classes[-1])
     bpy.types.ViewLayer.penumbra = PointerProperty(type=PenumbraViewLayerSettings)
     bpy.types.Object.penumbra = PointerProperty(type=PenumbraObjectSettings)
+    bpy.types.Light.penumbra = PointerProperty(type=light_class)
 
 
 def unregister():
+    del bpy.types.Light.penumbra
     del bpy.types.Object.penumbra
     del bpy.types.ViewLayer.penumbra
     del bpy.types.Scene.penumbra

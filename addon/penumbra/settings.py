@@ -10,10 +10,15 @@ def backend():
     return command_line.options().get('backend') or props.backend()
 
 
+def forced_technique():
+    """The technique that the command line wants for all lights, or None."""
+    return command_line.options().get('technique')
+
+
 def for_still(depsgraph, width, height):
     """pnb_settings of the scene for an image of this full size."""
     scene = depsgraph.scene_eval
-    settings = _common(scene, command_line.options().get('technique'), width, height)
+    settings = _common(scene, forced_technique(), width, height)
     settings.samples = scene.penumbra.samples
     settings.passes = passes.wanted(depsgraph.view_layer)
     settings.crop[:] = border(scene.render, width, height)
@@ -33,18 +38,24 @@ def for_viewport(scene, width, height, crop, samples, is_reference, image):
 def viewport_key(scene):
     """Everything that a viewport's picture depends on besides scene and view, to be compared."""
     options = scene.penumbra
-    row = props.technique(options)
-    return (options.technique, tuple(props.parameter_values(options, row)), options.shadow_map_size,
+    return (options.technique, tuple(_values(options, None)), options.shadow_map_size,
             options.light_samples, options.viewport_samples, options.use_refine, scene.render.film_transparent,
             scene.render.filter_size, backend())
 
 
+def _values(options, technique):
+    """[(name, number)] of the parameters of the technique so named, else of the scene's and of its lights'."""
+    values = props.parameter_values(options, props.technique(options, technique))
+    for name in props.light_techniques() if technique is None else ():
+        values += props.parameter_values(options, props.technique(options, name), of_lights=True)
+    return values
+
+
 def _common(scene, technique, width, height):
     options = scene.penumbra
-    row = props.technique(options, technique)
-    values = props.parameter_values(options, row)
+    values = _values(options, technique)
     settings = capi.Settings(
-        technique=row[0].id, width=width, height=height, filter_width=scene.render.filter_size,
+        technique=props.technique(options, technique)[0].id, width=width, height=height, filter_width=scene.render.filter_size,
         shadow_map_size=options.shadow_map_size, light_samples=options.light_samples,
         flags=capi.SETTINGS_FILM_TRANSPARENT if scene.render.film_transparent else 0)
     settings.values = (capi.Value * len(values))(*[capi.Value(name.encode(), value) for name, value in values])

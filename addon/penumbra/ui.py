@@ -42,16 +42,21 @@ def _paragraph(layout, text, context):
 def draw_technique(column, context):
     """The technique, what it is, its parameters, and the shadow maps."""
     settings = context.scene.penumbra
-    info, parameters = props.technique(settings)
     column.prop(settings, 'technique')
+    _draw_parameters(column, context, settings.technique)
+    column.separator()
+    column.prop(settings, 'shadow_map_size')
+
+
+def _draw_parameters(column, context, technique):
+    settings = context.scene.penumbra
+    info, parameters = props.technique(settings, technique)
     _paragraph(column, info.description.decode(), context)
     if info.paper:
         _paragraph(column, info.paper.decode(), context)
     group = getattr(settings, info.id.decode().lower())
     for parameter in parameters:
         column.prop(group, parameter.name.decode())
-    column.separator()
-    column.prop(settings, 'shadow_map_size')
 
 
 class PENUMBRA_PT_technique(_EnginePanel, Panel):
@@ -194,6 +199,28 @@ class PENUMBRA_PT_light(_EnginePanel, Panel):
         column.prop(light, 'use_shadow', text="Cast Shadow")
 
 
+class PENUMBRA_PT_light_shadow(_EnginePanel, Panel):
+    """What one light has by itself; with other engines where their pictures get our shadows."""
+    bl_label = "Soft Shadow"
+    bl_context = 'data'
+
+    @classmethod
+    def poll(cls, context):
+        scene = context.scene
+        return context.light and (super().poll(context) or scene.penumbra.use_overlay or
+                                  compositing.shadow_scene(scene) is not None)
+
+    def draw(self, context):
+        options = context.light.penumbra
+        column = self._column()
+        column.prop(options, 'shadow_color')
+        column.prop(options, 'shadow_map_size')
+        column.prop(options, 'technique')
+        if options.technique not in {props.AS_SCENE, context.scene.penumbra.technique}:
+            _draw_parameters(column, context, options.technique)
+            _paragraph(column, "All lights of this technique share its parameters.", context)
+
+
 class PENUMBRA_PT_object_visibility(_EnginePanel, Panel):
     bl_label = "Ray Visibility"
     bl_context = 'object'
@@ -232,7 +259,7 @@ class PENUMBRA_PT_composite(Panel):
 
 CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_performance, PENUMBRA_PT_film, PENUMBRA_PT_debug,
            PENUMBRA_PT_statistics, PENUMBRA_PT_report, PENUMBRA_PT_passes,
-           PENUMBRA_PT_light, PENUMBRA_PT_object_visibility, PENUMBRA_PT_composite)
+           PENUMBRA_PT_light, PENUMBRA_PT_light_shadow, PENUMBRA_PT_object_visibility, PENUMBRA_PT_composite)
 
 
 def _adopted():

@@ -270,6 +270,7 @@ class Run:
         self.size = width, height
         self.crop = tuple(values.crop)
         view.fill_camera(exported.scene.camera, wanted.view)
+        exported.use_own_techniques(kind != _REFERENCE)
         self._started = time.monotonic()
         self._exported, self._values = exported, values
         self._context = device.context(settings.backend())

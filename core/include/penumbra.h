@@ -29,7 +29,7 @@
 
 #define PNB_VERSION "0.1.0"
 /* Raised by every change of this header that is not a pure addition. */
-#define PNB_API_VERSION 4u
+#define PNB_API_VERSION 5u
 
 #ifdef PNB_BUILD
 #define PNB_API __attribute__((visibility("default")))
@@ -293,6 +293,12 @@ typedef struct pnb_light {
     float spot_blend;       /* SPOT: 0..1, the share of the cone over which its edge fades */
     float spread;           /* AREA: full angle of the cone that each of its points shines into, as through a honeycomb
                              * grid that leaves the whole power; 0 or pi: no grid */
+    const char *technique;  /* how its shadow is made; NULL or "": as pnb_settings says. Lights with and without
+                             * REFERENCE may be mixed: then every anti-aliasing sample is lit anew, as for REFERENCE
+                             * alone, and pnb_settings.light_samples counts for those lights that have it */
+    uint32_t shadow_map_size; /* texels per side, 16..max_texture_size; 0: as pnb_settings says */
+    float shadow_color[3];  /* 0..1, linear: the share of each channel that arrives in full shadow, as if the blockers
+                             * let it through; 0: none. In all passes */
 } pnb_light;
 
 typedef enum pnb_projection { PNB_PERSPECTIVE = 0, PNB_ORTHOGRAPHIC = 1 } pnb_projection;
@@ -367,8 +373,9 @@ enum pnb_settings_flags {
                                         * them. Only while the shadow maps of all lights fit into memory together */
 };
 
-/* A technique's parameter by name; INT, BOOL and ENUM values are rounded. Beyond its range: clamped, with a
- * warning in the job. An unknown name: INVALID_ARGUMENT. */
+/* A parameter by name: "filter_samples" is that of pnb_settings.technique, "ESSM.subdivision" that of the technique
+ * named, for lights that have it. Of one technique all lights have the same values. INT, BOOL and ENUM values are
+ * rounded. Beyond its range: clamped, with a warning in the job. An unknown name: INVALID_ARGUMENT. */
 typedef struct pnb_value {
     const char *name;
     double value;
@@ -377,7 +384,7 @@ typedef struct pnb_value {
 typedef struct pnb_settings {
     uint32_t struct_size;
     uint32_t flags;              /* enum pnb_settings_flags */
-    const char *technique;       /* identifier; NULL: "PCSS" */
+    const char *technique;       /* identifier; NULL: "PCSS"; of lights that have none of their own */
     const pnb_value *values;     /* parameters that differ from their defaults */
     uint32_t value_count;
     uint32_t width, height;      /* pixels of the full image, 1 .. max_texture_size */

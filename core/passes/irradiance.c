@@ -76,6 +76,7 @@ pnb_result pass_irradiance(struct frame *frame, const struct frame_light *light,
             gl_texture_bind(gl, &renderer->gbuffer_links, 4);
         program_set_int(gl, program, "gbuffer_links", 4);
         program_set_int(gl, program, "light_number", (int)frame->light);
+        program_set_vec3(gl, program, "shadow_color", light->source->shadow_color);
         draw_over(frame, program, tiles, false);
         result = gl_check(gl, "irradiance");
     }

@@ -67,8 +67,8 @@ void draw_over(struct frame *frame, GLuint program, enum tiles tiles, bool undec
  * translucent casters a map keeps: those that hide half of the light or more, or, where samples are averaged, as large
  * a share of their texels as of the light they hide, others in each sample; nothing but what is opaque; everything. */
 enum translucency { TRANSLUCENCY_CUT, TRANSLUCENCY_STOCHASTIC, TRANSLUCENCY_OPAQUE, TRANSLUCENCY_ANY };
-pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, enum translucency translucency,
-                           struct gl_texture *map);
+pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, int side,
+                           enum translucency translucency, struct gl_texture *map);
 /* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor
  * clear. Draws at the size of `map`, which it leaves as it is. most: of each list the nearest so many are kept, 0: all.
  * back_faces: without the front faces of solid bodies. what: for messages, names the light. */
@@ -148,11 +148,11 @@ void light_block_upload(struct renderer *renderer, const struct emitter *emitter
  * software renderer executes both sides of every branch. Static string. */
 const char *light_defines(const struct emitter *emitter, const struct light_views *views);
 /* What the technique's row defines for its shader; NULL: nothing. */
-const char *technique_defines(const struct settings *settings);
+const char *technique_defines(const struct frame_light *light);
 /* Gives the current program the light's maps and the technique's parameters, taps and own textures. */
 void bind_technique(struct frame *frame, const struct frame_light *light, GLuint program);
 /* Sets the technique's parameters as uniforms `p_<name>` of the current program. */
-void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings);
+void set_parameters(const struct gl *gl, GLuint program, const struct frame_light *light);
 /* Binds gbuffer_depth, _normal and _color as the current program's samplers. */
 void bind_gbuffer(struct renderer *renderer, GLuint program);
 /* The texture, or NULL if it was not made. */

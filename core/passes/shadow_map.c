@@ -37,11 +37,10 @@ static pnb_result draw_view(struct frame *frame, const struct light_views *views
         &(struct draw_programs){programs[0], programs[1], CASTERS_ALL, PNB_MATERIAL_CULL_SHADOW, false});
 }
 
-pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, enum translucency translucency,
-                           struct gl_texture *map) {
+pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, int side,
+                           enum translucency translucency, struct gl_texture *map) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const int side = (int)frame->settings->shadow_map_size;
     pnb_result result = gl_texture_ensure(gl, map, GL_DEPTH_COMPONENT32F, side, side, views->count, 1);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Shadow map")) != PNB_OK)
         return result;

@@ -100,8 +100,8 @@ pnb_result pass_classify(struct frame *frame, const struct frame_light *light) {
     const struct gl *gl = renderer->gl;
     const struct program_desc desc = {
         .compute = "pass_classify.comp",
-        .technique = frame->settings->technique->shader,
-        .defines = {light_defines(&light->emitter, &light->views), technique_defines(frame->settings)}};
+        .technique = light->technique->shader,
+        .defines = {light_defines(&light->emitter, &light->views), technique_defines(light)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Tiles")) != PNB_OK)

@@ -57,27 +57,26 @@ const char *light_defines(const struct emitter *emitter, const struct light_view
                                            : others[emitter->type][views->single];
 }
 
-const char *technique_defines(const struct settings *settings) {
-    return settings->technique->defines ? settings->technique->defines(settings->parameters) : NULL;
+const char *technique_defines(const struct frame_light *light) {
+    return light->technique->defines ? light->technique->defines(light->parameters) : NULL;
 }
 
-void set_parameters(const struct gl *gl, GLuint program, const struct settings *settings) {
-    for (int i = 0; settings->technique->parameters[i].name; i++) {
-        const struct parameter *parameter = &settings->technique->parameters[i];
+void set_parameters(const struct gl *gl, GLuint program, const struct frame_light *light) {
+    for (int i = 0; light->technique->parameters[i].name; i++) {
+        const struct parameter *parameter = &light->technique->parameters[i];
         char name[64];
         snprintf(name, sizeof name, "p_%s", parameter->name);
         if (parameter->type == PNB_FLOAT)
-            program_set_float(gl, program, name, (float)settings->parameters[i]);
+            program_set_float(gl, program, name, (float)light->parameters[i]);
         else
-            program_set_int(gl, program, name, (int)settings->parameters[i]);
+            program_set_int(gl, program, name, (int)light->parameters[i]);
     }
 }
 
-static void upload_taps(struct frame *frame, GLuint program, bool ellipse) {
+static void upload_taps(struct frame *frame, const struct frame_light *light, GLuint program) {
     const struct gl *gl = frame->gl;
     struct taps taps = {0};
-    frame->settings->technique->taps(frame->settings->parameters, ellipse, frame->sample, reuse_key_count(frame),
-                                     &taps);
+    light->technique->taps(light->parameters, light->emitter.ellipse, frame->sample, reuse_key_count(frame), &taps);
     gl->BindBuffer(GL_UNIFORM_BUFFER, frame->renderer->tap_buffer);
     gl->BufferData(GL_UNIFORM_BUFFER, sizeof taps.search + sizeof taps.filter, &taps, GL_STREAM_DRAW);
     gl->BindBufferBase(GL_UNIFORM_BUFFER, 2, frame->renderer->tap_buffer);
@@ -87,10 +86,9 @@ static void upload_taps(struct frame *frame, GLuint program, bool ellipse) {
 
 void bind_technique(struct frame *frame, const struct frame_light *light, GLuint program) {
     const struct gl *gl = frame->gl;
-    const struct technique *technique = frame->settings->technique;
-    set_parameters(gl, program, frame->settings);
-    if (technique->taps)
-        upload_taps(frame, program, light->emitter.ellipse);
+    set_parameters(gl, program, light);
+    if (light->technique->taps)
+        upload_taps(frame, light, program);
     if (light->views.count > 0) {
         gl_texture_bind(gl, &light->shadow_map, 3);
         if (light->min_max.id)
@@ -98,8 +96,8 @@ void bind_technique(struct frame *frame, const struct frame_light *light, GLuint
     }
     program_set_int(gl, program, "shadow_map", 3);
     program_set_int(gl, program, "min_max", 4);
-    if (technique->bind)
-        technique->bind(frame, light, program, 5);
+    if (light->technique->bind)
+        light->technique->bind(frame, light, program, 5);
 }
 
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles) {
@@ -107,9 +105,9 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light,
     const struct gl *gl = renderer->gl;
     const struct program_desc desc = {.vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
                                       .fragment = "pass_visibility.frag",
-                                      .technique = frame->settings->technique->shader,
+                                      .technique = light->technique->shader,
                                       .defines = {light_defines(&light->emitter, &light->views),
-                                                  technique_defines(frame->settings), fragment_defines(frame->scene)}};
+                                                  technique_defines(light), fragment_defines(frame->scene)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)

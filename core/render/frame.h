@@ -11,6 +11,7 @@
 
 struct renderer;
 struct gpu_scene;
+struct technique;
 
 /* The camera of one sample, std140 as common_camera.glsl reads it. */
 struct camera_block {
@@ -46,6 +47,9 @@ struct fragment_lists {
 
 struct frame_light {
     const struct scene_light *source;
+    const struct technique *technique; /* how its shadow is made */
+    const double *parameters;          /* of the technique, in the order of its row */
+    int map_size;                      /* texels per side */
     struct emitter emitter;
     struct light_views views;
     struct gl_texture shadow_map, min_max, planes;  /* a layer per view; kept over the samples of a pixel */

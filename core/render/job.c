@@ -211,6 +211,9 @@ static pnb_result start(pnb_context *context, const pnb_scene *scene, const pnb_
         result = scene_create(scene, &job->messages, &job->scene);
     }
     if (result == PNB_OK) {
+        result = settings_check_lights(job->scene, context_max_texture_size(context));
+    }
+    if (result == PNB_OK) {
         scene_camera_fit(&job->scene->camera, job->settings.width, job->settings.height);
     }
     if (result != PNB_OK) {

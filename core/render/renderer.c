@@ -92,46 +92,63 @@ static pnb_result find_receivers(struct frame *frame) {
     return result == PNB_OK ? read_receivers(frame) : result;
 }
 
-static void fit_lights(struct frame *frame) {
+static void choose_techniques(struct frame *frame) {
     for (uint32_t i = 0; i < frame->scene->light_count; i++) {
         struct frame_light *light = &frame->lights[i];
         light->source = &frame->scene->lights[i];
+        light->technique = settings_technique(frame->settings, light->source);
+        light->parameters = frame->settings->parameters[technique_index(light->technique)];
+        light->map_size = (int)settings_map_size(frame->settings, light->source);
+    }
+}
+
+static void fit_lights(struct frame *frame) {
+    for (uint32_t i = 0; i < frame->scene->light_count; i++) {
+        struct frame_light *light = &frame->lights[i];
         emitter_init(&light->emitter, light->source, frame->origin);
         light_views_fit(&light->views, &light->emitter, frame->receivers, frame->receiver_count, frame->casters,
-                        frame->caster_count, (int)frame->settings->shadow_map_size);
+                        frame->caster_count, light->map_size);
         if (!light->emitter.casts_shadow)
             light->views.count = 0;
     }
 }
 
-static bool uses_tiles(const struct frame *frame) {
-    return technique_skips(frame->settings->technique, frame->settings->parameters);
+static bool uses_tiles(const struct frame_light *light) {
+    return technique_skips(light->technique, light->parameters);
 }
 
-static uint64_t light_bytes(const struct frame *frame, const struct frame_light *light) {
-    const uint64_t side = frame->settings->shadow_map_size;
-    return side * side * (4 * 2 + frame->settings->technique->prefilter_bytes) * (uint64_t)light->views.count;
+static bool some_light(const struct frame *frame, bool (*has)(const struct frame_light *light)) {
+    for (uint32_t i = 0; i < frame->scene->light_count; i++)
+        if (has(&frame->lights[i]))
+            return true;
+    return false;
 }
 
-static enum translucency map_translucency(const struct frame *frame) {
-    if (frame->settings->technique->needs & NEEDS_ALL_CASTERS)
+static uint64_t light_bytes(const struct frame_light *light) {
+    const uint64_t side = (uint64_t)light->map_size;
+    return side * side * (4 * 2 + light->technique->prefilter_bytes) * (uint64_t)light->views.count;
+}
+
+static enum translucency map_translucency(const struct frame *frame, const struct frame_light *light) {
+    if (light->technique->needs & NEEDS_ALL_CASTERS)
         return TRANSLUCENCY_ANY;
     return frame->settings->samples > 1 ? TRANSLUCENCY_STOCHASTIC : TRANSLUCENCY_CUT;
 }
 
 static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *light) {
     frame->light = (uint32_t)(light - frame->lights);
-    if (light->views.count == 0 || frame->settings->technique->draw)
+    if (light->views.count == 0 || light->technique->draw)
         return PNB_OK;
-    pnb_result result = pass_shadow_map(frame, &light->views, map_translucency(frame), &light->shadow_map);
-    if (result == PNB_OK && (frame->settings->technique->needs & NEEDS_MIN_MAX))
+    pnb_result result =
+        pass_shadow_map(frame, &light->views, light->map_size, map_translucency(frame, light), &light->shadow_map);
+    if (result == PNB_OK && (light->technique->needs & NEEDS_MIN_MAX))
         result = pass_min_max(frame, &light->shadow_map, &light->min_max);
-    if (result == PNB_OK && uses_tiles(frame)) {
+    if (result == PNB_OK && uses_tiles(light)) {
         light_block_upload(frame->renderer, &light->emitter, &light->views);
         result = pass_planes(frame, light);
     }
-    if (result == PNB_OK && frame->settings->technique->prefilter)
-        result = frame->settings->technique->prefilter(frame, light);
+    if (result == PNB_OK && light->technique->prefilter)
+        result = light->technique->prefilter(frame, light);
     return result;
 }
 
@@ -166,7 +183,7 @@ static pnb_result draw_light(struct frame *frame, uint32_t index, bool first) {
     if (result != PNB_OK)
         return result;
     /* A technique that adds up many samples needs single precision; one that writes its result does not. */
-    const GLenum format = frame->settings->technique->draw ? GL_RGBA32F : GL_RGBA16F;
+    const GLenum format = light->technique->draw ? GL_RGBA32F : GL_RGBA16F;
     result = gl_texture_ensure(frame->gl, &renderer->visibility, format, frame->width, frame->height, 0, 1);
     if (result != PNB_OK)
         return result;
@@ -174,8 +191,8 @@ static pnb_result draw_light(struct frame *frame, uint32_t index, bool first) {
     const enum tiles tiles = !light->planes.id ? TILES_NONE : reuse_is_key(frame) ? TILES_CLASSIFIED : TILES_UNDECIDED;
     if (tiles == TILES_CLASSIFIED)
         result = pass_classify(frame, light);
-    if (result == PNB_OK && frame->settings->technique->draw)
-        result = frame->settings->technique->draw(frame, light);
+    if (result == PNB_OK && light->technique->draw)
+        result = light->technique->draw(frame, light);
     else if (result == PNB_OK)
         result = pass_visibility(frame, light, tiles);
     if (result != PNB_OK)
@@ -193,17 +210,16 @@ static pnb_result show_samples(struct frame *frame) {
     return result == PNB_OK ? job_publish(frame->job, done) : result;
 }
 
-/* Whether each sample has its own part of what is translucent in its maps. */
-static bool has_sample_maps(const struct frame *frame) {
-    return frame->scene->translucent && map_translucency(frame) == TRANSLUCENCY_STOCHASTIC;
+/* Whether each sample has its own part of what is translucent in the light's maps. */
+static bool has_sample_maps(const struct frame *frame, const struct frame_light *light) {
+    return frame->scene->translucent && map_translucency(frame, light) == TRANSLUCENCY_STOCHASTIC;
 }
 
 static pnb_result draw_sample_maps(struct frame *frame, uint32_t first, uint32_t last) {
     pnb_result result = PNB_OK;
-    if (frame->sample == 0 || !has_sample_maps(frame))
-        return PNB_OK;
-    for (uint32_t i = first; i < last && result == PNB_OK; i++)
-        result = draw_shadow_maps(frame, &frame->lights[i]);
+    for (uint32_t i = first; i < last && result == PNB_OK && frame->sample > 0; i++)
+        if (has_sample_maps(frame, &frame->lights[i]))
+            result = draw_shadow_maps(frame, &frame->lights[i]);
     return result;
 }
 
@@ -216,7 +232,7 @@ static pnb_result begin_sample(struct frame *frame, bool drawn_already) {
     reuse_light_mean(frame);
     if (!drawn_already)
         result = pass_gbuffer(frame, false);
-    if (result == PNB_OK && !drawn_already && key && uses_tiles(frame))
+    if (result == PNB_OK && !drawn_already && key && some_light(frame, uses_tiles))
         result = pass_tiles(frame);
     if (key)
         glm_vec4_copy(frame->camera.window, frame->key_window);
@@ -252,12 +268,16 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
  * measured by. */
 static bool can_reuse(const struct frame *frame) {
     const struct settings *settings = frame->settings;
-    return settings->samples > 1 && frame->scene->light_count > 0 && !settings->technique->draw &&
-           !(settings->passes & PNB_PASS_LIGHT_SHADOWS) && !has_sample_maps(frame) && !frame->scene->light_linked;
+    bool steady = true;
+    for (uint32_t i = 0; i < frame->scene->light_count; i++)
+        steady = steady && !frame->lights[i].technique->draw && !has_sample_maps(frame, &frame->lights[i]);
+    return settings->samples > 1 && frame->scene->light_count > 0 && steady &&
+           !(settings->passes & PNB_PASS_LIGHT_SHADOWS) && !frame->scene->light_linked;
 }
 
 static pnb_result draw_frame(struct frame *frame) {
     pnb_result result;
+    choose_techniques(frame);
     frame->reuses = can_reuse(frame);
     /* Memory first: an image that is too large must not be drawn for a minute before it fails. */
     if ((result = pass_create_images(frame)) != PNB_OK || (result = pass_prepare_sums(frame)) != PNB_OK ||
@@ -270,7 +290,7 @@ static pnb_result draw_frame(struct frame *frame) {
         uint32_t last = first;
         frame->sample = 0;
         for (uint64_t bytes = 0; last < count && result == PNB_OK; last++) {
-            bytes += light_bytes(frame, &frame->lights[last]);
+            bytes += light_bytes(&frame->lights[last]);
             if (bytes > SHADOW_MAP_BUDGET && last > first)
                 break;
             result = draw_shadow_maps(frame, &frame->lights[last]);

@@ -3,6 +3,7 @@
 #include "../techniques/technique.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define DEFAULT_PASSES (PNB_PASS_COMBINED | PNB_PASS_DEPTH | PNB_PASS_NORMAL | PNB_PASS_SHADOW)
@@ -44,20 +45,39 @@ static pnb_result resolve_crop(const pnb_settings *from, struct settings *to) {
     return PNB_OK;
 }
 
+/* "name" or "TECHNIQUE.name": sets *technique and gives the parameter's index, below 0 after error_set. */
+static int find_parameter(const char *qualified, const struct technique **technique) {
+    const char *name = qualified ? qualified : "(null)", *dot = strchr(name, '.');
+    char id[32];
+    if (dot) {
+        const size_t length = (size_t)(dot - name);
+        snprintf(id, sizeof id, "%.*s", (int)(length < sizeof id ? length : sizeof id - 1), name);
+        *technique = technique_find(id);
+        if (!*technique) {
+            error_set(PNB_ERROR_INVALID_ARGUMENT, "parameter '%s': there is no technique '%s'", name, id);
+            return -1;
+        }
+        name = dot + 1;
+    }
+    const int index = technique_parameter(*technique, name);
+    if (index < 0)
+        error_set(PNB_ERROR_INVALID_ARGUMENT, "technique %s has no parameter '%s'", (*technique)->id, name);
+    return index;
+}
+
 static pnb_result resolve_value(const pnb_value *from, struct messages *messages, struct settings *to) {
     const struct technique *technique = to->technique;
-    const int index = from->name ? technique_parameter(technique, from->name) : -1;
+    const int index = find_parameter(from->name, &technique);
     if (index < 0)
-        return error_set(PNB_ERROR_INVALID_ARGUMENT, "technique %s has no parameter '%s'", technique->id,
-                         from->name ? from->name : "(null)");
+        return PNB_ERROR_INVALID_ARGUMENT;
     const struct parameter *parameter = &technique->parameters[index];
     if (!isfinite(from->value))
         return error_set(PNB_ERROR_INVALID_ARGUMENT, "parameter '%s' is not a finite number", from->name);
     double value = parameter->type == PNB_FLOAT ? from->value : round(from->value);
     const double clamped = fmin(fmax(value, parameter->minimum), parameter->maximum);
     if (clamped != value)
-        messages_add(messages, "%s: parameter '%s' is %g, taken as %g", technique->id, from->name, value, clamped);
-    to->parameters[index] = clamped;
+        messages_add(messages, "%s: parameter '%s' is %g, taken as %g", technique->id, parameter->name, value, clamped);
+    to->parameters[technique_index(technique)][index] = clamped;
     return PNB_OK;
 }
 
@@ -66,8 +86,9 @@ static pnb_result resolve_technique(const pnb_settings *from, struct messages *m
     to->technique = technique_find(id);
     if (!to->technique)
         return error_set(PNB_ERROR_INVALID_ARGUMENT, "there is no technique '%s'", id);
-    for (int i = 0; to->technique->parameters[i].name; i++)
-        to->parameters[i] = to->technique->parameters[i].default_value;
+    for (int t = 0; techniques[t]; t++)
+        for (int i = 0; techniques[t]->parameters[i].name; i++)
+            to->parameters[t][i] = techniques[t]->parameters[i].default_value;
     if (from->value_count && !from->values)
         return error_set(PNB_ERROR_INVALID_ARGUMENT, "settings: values is NULL");
     for (uint32_t i = 0; i < from->value_count; i++) {
@@ -76,6 +97,32 @@ static pnb_result resolve_technique(const pnb_settings *from, struct messages *m
             return result;
     }
     return PNB_OK;
+}
+
+static pnb_result check_light(const struct scene_light *light, uint32_t max_texture_size) {
+    if (light->technique && !technique_find(light->technique))
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "light '%s': there is no technique '%s'", light->name,
+                         light->technique);
+    if (light->shadow_map_size == 0)
+        return PNB_OK;
+    char name[128];
+    snprintf(name, sizeof name, "light '%.64s': its shadow_map_size", light->name);
+    return check_size(name, light->shadow_map_size, 16, max_texture_size);
+}
+
+pnb_result settings_check_lights(const struct scene *scene, uint32_t max_texture_size) {
+    pnb_result result = PNB_OK;
+    for (uint32_t i = 0; i < scene->light_count && result == PNB_OK; i++)
+        result = check_light(&scene->lights[i], max_texture_size);
+    return result;
+}
+
+const struct technique *settings_technique(const struct settings *settings, const struct scene_light *light) {
+    return light->technique ? technique_find(light->technique) : settings->technique;
+}
+
+uint32_t settings_map_size(const struct settings *settings, const struct scene_light *light) {
+    return light->shadow_map_size ? light->shadow_map_size : settings->shadow_map_size;
 }
 
 pnb_result settings_resolve(const pnb_settings *from, uint32_t max_texture_size, struct messages *messages,

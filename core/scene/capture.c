@@ -129,6 +129,7 @@ void pnb_capture_destroy(pnb_capture **capture) {
     }
     for (uint32_t i = 0; i < last->scene.light_count; i++) {
         memory_free((char *)last->lights[i].name);
+        memory_free((char *)last->lights[i].technique);
     }
     for (uint32_t i = 0; i < last->settings.value_count; i++) {
         memory_free((char *)last->values[i].name);

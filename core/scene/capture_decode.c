@@ -289,13 +289,16 @@ static pnb_result decode_instances(struct decoder *decoder) {
 
 static pnb_result decode_lights(struct decoder *decoder) {
     pnb_capture *capture = decoder->capture;
-    size_t smallest = fields_size(&light_fields) + sizeof(uint32_t);
+    size_t smallest = fields_size(&light_fields) + 2 * sizeof(uint32_t);
     pnb_result result = decode_elements(decoder, smallest, sizeof *capture->lights, &capture->lights);
     for (uint32_t i = 0; result == PNB_OK && i < decoder->count; i++) {
         pnb_light *light = &capture->lights[i];
         light->struct_size = sizeof *light;
         capture->scene.light_count++;
         result = decode_string(&decoder->reader, &light->name);
+        if (result == PNB_OK) {
+            result = decode_string(&decoder->reader, &light->technique);
+        }
         read_fields(&decoder->reader, &light_fields, light);
     }
     capture->scene.lights = capture->lights;

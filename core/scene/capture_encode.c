@@ -73,6 +73,7 @@ static void encode_lights(struct encoder *encoder) {
     for (uint32_t i = 0; i < encoder->scene->light_count; i++) {
         const pnb_light *light = &encoder->scene->lights[i];
         write_string(encoder->writer, light->name);
+        write_string(encoder->writer, light->technique);
         write_fields(encoder->writer, &light_fields, light);
     }
 }

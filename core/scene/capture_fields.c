@@ -24,9 +24,11 @@ static const struct field material_fields_table[] = {
 FIELD_LIST(material_fields);
 
 static const struct field light_fields_table[] = {
-    FIELD(pnb_light, flags),      FIELD(pnb_light, type),       FIELD(pnb_light, shape),  FIELD(pnb_light, matrix),
-    FIELD(pnb_light, emission),   FIELD(pnb_light, size),       FIELD(pnb_light, radius), FIELD(pnb_light, angle),
-    FIELD(pnb_light, spot_angle), FIELD(pnb_light, spot_blend), FIELD(pnb_light, spread),
+    FIELD(pnb_light, flags),        FIELD(pnb_light, type),     FIELD(pnb_light, shape),
+    FIELD(pnb_light, matrix),       FIELD(pnb_light, emission), FIELD(pnb_light, size),
+    FIELD(pnb_light, radius),       FIELD(pnb_light, angle),    FIELD(pnb_light, spot_angle),
+    FIELD(pnb_light, spot_blend),   FIELD(pnb_light, spread),   FIELD(pnb_light, shadow_map_size),
+    FIELD(pnb_light, shadow_color),
 };
 FIELD_LIST(light_fields);
 

@@ -239,11 +239,13 @@ static pnb_result copy_lights(const pnb_scene *from, struct messages *messages, 
             links_drop_light(to, to->light_count);
             continue;
         }
+        const char *technique = from->lights[i].technique;
         light->name = light_unique_name(to, name);
-        if (!light->name) {
+        light->technique = technique && technique[0] ? memory_string(technique, "") : NULL;
+        to->light_count++;
+        if (!light->name || (technique && technique[0] && !light->technique)) {
             return PNB_ERROR_OUT_OF_MEMORY;
         }
-        to->light_count++;
         if (strcmp(light->name, name) != 0) {
             messages_add(messages, "light '%s': another light has this name; its pass is 'Shadow.%s'", name,
                          light->name);
@@ -317,6 +319,7 @@ void scene_destroy(struct scene **scene) {
     }
     for (uint32_t i = 0; i < last->light_count; i++) {
         memory_free(last->lights[i].name);
+        memory_free(last->lights[i].technique);
     }
     memory_free(last->instances);
     memory_free(last->materials);

@@ -94,6 +94,9 @@ struct scene_light {
     float emission[3];
     float size[2], radius, angle, spot_angle, spot_blend;
     float spread; /* AREA: below pi, or 0 */
+    char *technique; /* NULL: the settings'; not checked, since a scene knows no techniques */
+    uint32_t shadow_map_size; /* 0: the settings'; not checked */
+    float shadow_color[3];
 };
 
 struct scene_camera {

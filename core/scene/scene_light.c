@@ -56,6 +56,7 @@ static void light_copy(const pnb_light *from, struct scene_light *to) {
     memcpy(to->matrix, from->matrix, sizeof to->matrix);
     matrix_make_affine(to->matrix);
     memcpy(to->emission, from->emission, sizeof to->emission);
+    to->shadow_map_size = from->shadow_map_size;
     if (from->type == PNB_LIGHT_AREA) {
         to->shape = from->shape;
         memcpy(to->size, from->size, sizeof to->size);
@@ -70,6 +71,18 @@ static void light_copy(const pnb_light *from, struct scene_light *to) {
     if (from->type == PNB_LIGHT_SPOT) {
         to->spot_angle = from->spot_angle != 0 ? fabsf(from->spot_angle) : DEFAULT_SPOT_ANGLE;
         to->spot_blend = from->spot_blend;
+    }
+}
+
+static void light_resolve_shadow_color(const float from[3], const char *name, struct messages *messages, float to[3]) {
+    bool good = true;
+    for (int i = 0; i < 3; i++) {
+        to[i] = from[i] > 0 ? fminf(from[i], 1) : 0; /* NaN: 0 */
+        good = good && to[i] == from[i];
+    }
+    if (!good) {
+        messages_add(messages, "light '%s': its shadow colour is out of range and is taken as (%g, %g, %g)", name,
+                     (double)to[0], (double)to[1], (double)to[2]);
     }
 }
 
@@ -96,6 +109,7 @@ bool light_resolve(const pnb_light *from, const char *name, struct messages *mes
     for (int i = 0; i < 3; i++) {
         to->emission[i] = clamped(to->emission[i], 0, LARGEST_NUMBER, name, "emission", messages);
     }
+    light_resolve_shadow_color(from->shadow_color, name, messages, to->shadow_color);
     light_resolve_axes(to, name, messages);
     if (to->type == PNB_LIGHT_AREA) {
         light_resolve_size(to);

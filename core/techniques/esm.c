@@ -132,7 +132,7 @@ static pnb_result draw_exponential(struct frame *frame, const struct frame_light
         return result;
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
-    set_parameters(gl, program, frame->settings);
+    set_parameters(gl, program, light);
     gl_texture_bind(gl, &light->shadow_map, 0);
     gl_texture_bind(gl, &light->min_max, 1);
     program_set_int(gl, program, "shadow_map", 0);
@@ -149,7 +149,7 @@ static pnb_result draw_exponential(struct frame *frame, const struct frame_light
 }
 
 static pnb_result esm_prefilter(struct frame *frame, struct frame_light *light) {
-    const double *values = frame->settings->parameters;
+    const double *values = light->parameters;
     const int side = light->shadow_map.width;
     int levels = 1;
     while (values[LOOKUP] != LOOKUP_BILINEAR && side >> levels > 0)

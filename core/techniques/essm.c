@@ -141,7 +141,7 @@ static void bind_basis(struct frame *frame, GLuint program, const struct essm *e
     const struct frame_light *light = essm->light;
     const struct gl_texture *const textures[] = {&light->shadow_map, &light->min_max, &essm->pyramid,
                                                  &light->prefiltered[2]};
-    set_parameters(gl, program, frame->settings);
+    set_parameters(gl, program, light);
     for (int i = 0; i < 4; i++) {
         if (textures[i]->id)
             gl_texture_bind(gl, textures[i], i);
@@ -185,7 +185,7 @@ static pnb_result make_pyramid(struct frame *frame, struct essm *essm, float gre
 /* AS_PUBLISHED: the largest tile whose sums stay below 2^32 (section 6.1), which they do when the mean of each block of
  * a level of the pyramid is below 2^(32 - bits) / area. */
 static pnb_result choose_tile(struct frame *frame, struct essm *essm) {
-    const int bits = (int)frame->settings->parameters[BITS];
+    const int bits = (int)essm->light->parameters[BITS];
     float greatest[MAX_LEVELS];
     pnb_result result = make_pyramid(frame, essm, greatest);
     for (int level = log2_of(SMALLEST_TILE); level <= essm->pyramid.levels && level < MAX_LEVELS; level++)
@@ -233,7 +233,7 @@ static pnb_result make_tables(struct frame *frame, struct essm *essm, int channe
                                           essm->light->shadow_map.layers, levels);
     const struct summed_area sums = {.channels = channels,
                                      .tile = essm->light->prefiltered_tile,
-                                     .scale = ldexpf(1.0f, (int)frame->settings->parameters[BITS]) - 1.0f,
+                                     .scale = ldexpf(1.0f, (int)essm->light->parameters[BITS]) - 1.0f,
                                      .values = "essm_values.glsl",
                                      .bind = bind_values,
                                      .user = essm};
@@ -244,11 +244,11 @@ static pnb_result make_tables(struct frame *frame, struct essm *essm, int channe
 
 static pnb_result essm_prefilter(struct frame *frame, struct frame_light *light) {
     struct essm essm = {.light = light};
-    const bool robust = frame->settings->parameters[MODE] == MODE_ROBUST;
+    const bool robust = light->parameters[MODE] == MODE_ROBUST;
     pnb_result result;
     int levels = 1;
     /* Values of 1 all over a tile must not overflow. */
-    light->prefiltered_tile = robust ? 1 << ((32 - (int)frame->settings->parameters[BITS]) / 2) : SMALLEST_TILE;
+    light->prefiltered_tile = robust ? 1 << ((32 - (int)light->parameters[BITS]) / 2) : SMALLEST_TILE;
     if (light->prefiltered_tile > LARGEST_LOCAL_TILE)
         light->prefiltered_tile = LARGEST_LOCAL_TILE;
     while (robust && light->prefiltered_tile << (levels - 1) < light->shadow_map.width)

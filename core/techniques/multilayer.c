@@ -130,7 +130,7 @@ static float light_size(const struct emitter *emitter) {
 }
 
 static pnb_result multilayer_prefilter(struct frame *frame, struct frame_light *light) {
-    const double *values = frame->settings->parameters;
+    const double *values = light->parameters;
     const struct fragment_filter filter = {.level_count = (int)values[LEVELS],
                                            .stack_side = (int)values[PYRAMID] == Y_MAP ? (int)values[STACK_SIZE] : 0,
                                            .subsampled_levels = (int)values[BASE_SUBSAMPLING],

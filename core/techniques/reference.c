@@ -13,8 +13,9 @@ static const char *const weightings[] = {"IRRADIANCE", "UNIFORM", NULL};
 static const struct parameter parameters[] = {
     [WEIGHTS] = {.name = "weights",
                  .label = "Weights",
-                 .description = "IRRADIANCE: a point of the light counts as much as it lights the surface, as in nature. "
-                                "UNIFORM: all count the same, as in the papers",
+                 .description =
+                     "IRRADIANCE: a point of the light counts as much as it lights the surface, as in nature. "
+                     "UNIFORM: all count the same, as in the papers",
                  .unit = "",
                  .type = PNB_ENUM,
                  .maximum = 1,
@@ -60,8 +61,8 @@ struct sample_maps {
 };
 
 /* Adds one light sample to the visibility sums. */
-static pnb_result add_sample(struct frame *frame, const struct emitter *point, const struct light_views *views,
-                             const vec4 normal, const struct sample_maps *maps) {
+static pnb_result add_sample(struct frame *frame, const struct frame_light *light, const struct emitter *point,
+                             const struct light_views *views, const vec4 normal, const struct sample_maps *maps) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = frame->gl;
     const struct program_desc desc = {.vertex = "pass_screen.vert",
@@ -86,32 +87,32 @@ static pnb_result add_sample(struct frame *frame, const struct emitter *point, c
         fragment_lists_bind(gl, &maps->translucent);
     program_set_int(gl, program, "shadow_map", 3);
     program_set_vec4(gl, program, "emitter_normal", normal);
-    program_set_int(gl, program, "uniform_weights", frame->settings->parameters[WEIGHTS] > 0.0);
+    program_set_int(gl, program, "uniform_weights", light->parameters[WEIGHTS] > 0.0);
     draw_screen(renderer);
     timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
     return gl_check(gl, "reference visibility");
 }
 
-static pnb_result draw_sample(struct frame *frame, const struct emitter *emitter, int i, int j, int n,
+static pnb_result draw_sample(struct frame *frame, const struct frame_light *light, int i, int j, int n,
                               struct sample_maps *maps) {
     struct emitter point;
     struct light_views views;
     vec4 normal;
-    emitter_at(emitter, i, j, n, &point, normal);
+    emitter_at(&light->emitter, i, j, n, &point, normal);
     light_views_fit(&views, &point, frame->coarse_receivers, frame->coarse_receiver_count, frame->casters,
-                    frame->caster_count, (int)frame->settings->shadow_map_size);
+                    frame->caster_count, light->map_size);
     pnb_result result = PNB_OK;
-    const bool shadows = views.count > 0 && emitter->casts_shadow;
+    const bool shadows = views.count > 0 && point.casts_shadow;
     maps->translucent.count = 0;
     if (shadows)
-        result = pass_shadow_map(frame, &views, TRANSLUCENCY_OPAQUE, &maps->opaque);
+        result = pass_shadow_map(frame, &views, light->map_size, TRANSLUCENCY_OPAQUE, &maps->opaque);
     if (result == PNB_OK && shadows && frame->scene->translucent)
         result = pass_fragment_lists(frame, &views, CASTERS_TRANSLUCENT, false, 0, &maps->opaque,
                                      "translucent surfaces", &maps->translucent);
     if (result != PNB_OK)
         return result;
     light_block_upload(frame->renderer, &point, &views);
-    return add_sample(frame, &point, &views, normal, maps);
+    return add_sample(frame, light, &point, &views, normal, maps);
 }
 
 static pnb_result reference_draw(struct frame *frame, const struct frame_light *light) {
@@ -125,7 +126,7 @@ static pnb_result reference_draw(struct frame *frame, const struct frame_light *
     struct sample_maps maps = {0};
     const int n = (int)frame->settings->light_samples;
     for (int i = 0; i < n * n && result == PNB_OK; i++) {
-        result = draw_sample(frame, &light->emitter, i % n, i / n, n, &maps);
+        result = draw_sample(frame, light, i % n, i / n, n, &maps);
         if (result == PNB_OK && i % 8 == 7) {
             gl->Finish();
             if (job_is_cancelled(frame->job))

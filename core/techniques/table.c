@@ -11,12 +11,20 @@ extern const struct technique technique_hard, technique_pcf, technique_pcss, tec
 const struct technique *const techniques[] = {
     &technique_hard, &technique_pcf,        &technique_pcss,      &technique_esm,
     &technique_essm, &technique_multilayer, &technique_reference, NULL};
+_Static_assert(sizeof techniques / sizeof *techniques - 1 <= MAX_TECHNIQUES, "settings hold the values of all");
 
 const struct technique *technique_find(const char *id) {
     for (int i = 0; techniques[i]; i++)
         if (strcasecmp(techniques[i]->id, id) == 0)
             return techniques[i];
     return NULL;
+}
+
+int technique_index(const struct technique *technique) {
+    int index = 0;
+    while (techniques[index] != technique)
+        index++;
+    return index;
 }
 
 int technique_parameter(const struct technique *technique, const char *name) {

@@ -51,6 +51,8 @@ extern const struct technique *const techniques[]; /* ends with NULL */
 
 /* By identifier, in any case; NULL if there is none. */
 const struct technique *technique_find(const char *id);
+/* Place in the table. */
+int technique_index(const struct technique *technique);
 /* Index of a parameter by name, -1 if there is none. */
 int technique_parameter(const struct technique *technique, const char *name);
 /* Whether the SKIP_PARAMETER is there and on. */

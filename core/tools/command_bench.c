@@ -364,6 +364,7 @@ int command_bench(int count, char **arguments) {
     if (options.json && !output_check(options.json))
         return EXIT_RENDER;
     struct replay replay;
+    options.replay.one_technique = options.technique_count > 0;
     code = replay_open(&replay, options.capture, &options.replay);
     if (code == EXIT_OK && options.technique_count == 0)
         add_technique(&options, replay.technique);

@@ -19,7 +19,7 @@ static const char help[] =
     "  .pfm  one pass, 32-bit floats, 1 or 3 channels\n"
     "OUTPUT is written completely or not at all.\n\n"
     "  -o, --output FILE           what to write\n"
-    "  -t, --technique ID          shadow technique; 'penumbra info' lists them\n"
+    "  -t, --technique ID          shadow technique of all lights; 'penumbra info' lists them\n"
     "      --pass NAME             Combined (default), Depth, Normal, Shadow or Shadow.LIGHT;\n"
     "                              for an .exr: write only this pass\n"
     "      --exposure STOPS        PNG: brighten by so many stops\n"
@@ -306,6 +306,7 @@ int command_render(int count, char **arguments) {
     struct replay replay;
     pnb_value values[MAX_VALUES];
     pnb_settings settings;
+    options.replay.one_technique = options.technique;
     code = replay_open(&replay, options.capture, &options.replay);
     if (code == EXIT_OK && passes == PNB_PASS_LIGHT_SHADOWS && !check_light(options.pass, &replay.scene))
         code = EXIT_USAGE;

@@ -78,16 +78,25 @@ static void change_size(struct replay *replay, const uint32_t size[2]) {
     memset(settings->crop, 0, sizeof settings->crop); /* the capture's was for its own size */
 }
 
+static void change_light(pnb_light *light, const struct replay_options *options) {
+    if (options->unshadowed)
+        light->flags |= PNB_LIGHT_NO_SHADOW;
+    if (options->one_technique)
+        light->technique = NULL;
+    if (options->shadow_map_size)
+        light->shadow_map_size = 0;
+}
+
 /* The scene is the capture's: what changes is copied. */
 static bool change_scene(struct replay *replay, const struct replay_options *options) {
     pnb_scene *scene = &replay->scene;
-    if (options->unshadowed && scene->light_count) {
+    if ((options->unshadowed || options->one_technique || options->shadow_map_size) && scene->light_count) {
         replay->lights = calloc(scene->light_count, sizeof *replay->lights);
         if (!replay->lights)
             return tool_error("out of memory");
         memcpy(replay->lights, scene->lights, scene->light_count * sizeof *replay->lights);
         for (uint32_t i = 0; i < scene->light_count; i++)
-            replay->lights[i].flags |= PNB_LIGHT_NO_SHADOW;
+            change_light(&replay->lights[i], options);
         scene->lights = replay->lights;
     }
     if (options->clay) {
@@ -170,9 +179,10 @@ bool replay_settings(const struct replay *replay, const struct replay_options *o
     *settings = replay->settings;
     settings->technique = technique_id(technique);
     uint32_t count = 0;
-    /* The capture's values belong to its own technique; the command line's come later and win. */
-    for (uint32_t i = 0; technique == replay->technique && i < replay->settings.value_count; i++)
-        if (count < MAX_ASSIGNMENTS)
+    /* The capture's values belong to its own technique or to the one they name; the command line's come later and win.
+     */
+    for (uint32_t i = 0; i < replay->settings.value_count && count < MAX_ASSIGNMENTS; i++)
+        if (technique == replay->technique || strchr(replay->settings.values[i].name, '.'))
             values[count++] = replay->settings.values[i];
     for (uint32_t i = 0; i < options->assignment_count; i++) {
         pnb_value value;

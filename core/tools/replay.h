@@ -17,6 +17,7 @@ struct replay_options {
     uint32_t assignment_count;
     uint32_t size[2], crop[4];
     uint32_t samples, shadow_map_size, light_samples;
+    bool one_technique; /* for all lights, whatever the capture has for single ones */
     const char *backend;
     bool unshadowed, clay;
     bool verbose;

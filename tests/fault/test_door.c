@@ -296,6 +296,17 @@ static void bad_lights(void) {
     ROW(PNB_OK, "", LAMPS(light->matrix[0] = 1000; light->matrix[5] = 0.001f));
     ROW(PNB_OK, "", LAMPS(light->flags = PNB_LIGHT_NO_SHADOW));
     ROW(PNB_OK, "", LAMPS(light->flags = PNB_LIGHT_COSINE_SPOT));
+    pnb_light *const point = &room.lights[ROOM_POINT];
+    ROW(INVALID, "light 'Point': there is no technique 'NONE'", point->technique = "NONE");
+    ROW(PNB_OK, "", point->technique = "");
+    ROW(PNB_OK, "", point->technique = "reference");
+    ROW(INVALID, "light 'Point': its shadow_map_size is 15", point->shadow_map_size = 15);
+    ROW(PNB_ERROR_UNSUPPORTED, "light 'Point': its shadow_map_size", point->shadow_map_size = UINT32_MAX);
+    ROW(PNB_OK, "", point->shadow_map_size = 16);
+    ROW(PNB_OK, "light 'Point': its shadow colour", point->shadow_color[0] = -1);
+    ROW(PNB_OK, "taken as (0, 0, 1)", point->shadow_color[2] = 2);
+    ROW(PNB_OK, "light 'Point': its shadow colour", point->shadow_color[1] = NAN);
+    ROW(PNB_OK, "", memcpy(point->shadow_color, (float[]){0, 0.5f, 1}, sizeof point->shadow_color));
 }
 
 /* Sums and products of the largest numbers there may be. */
@@ -473,6 +484,15 @@ static void bad_parameters(void) {
         room.values[0] = (pnb_value){"kernel_width", INFINITY});
     ROW(PNB_OK, "", settings->technique = "PCF"; settings->value_count = 2;
         room.values[0] = (pnb_value){"kernel_width", 3}; room.values[1] = (pnb_value){"kernel_width", 4});
+    ROW(PNB_OK, "", settings->value_count = 1; room.values[0] = (pnb_value){"PCF.kernel_width", 4});
+    ROW(PNB_OK, "'kernel_width' is 400", settings->value_count = 1;
+        room.values[0] = (pnb_value){"PCF.kernel_width", 400});
+    ROW(INVALID, "there is no technique 'NONE'", settings->value_count = 1;
+        room.values[0] = (pnb_value){"NONE.kernel_width", 4});
+    ROW(INVALID, "technique PCF has no parameter 'width'", settings->value_count = 1;
+        room.values[0] = (pnb_value){"PCF.width", 4});
+    ROW(INVALID, "has no parameter ''", settings->value_count = 1; room.values[0] = (pnb_value){"PCF.", 4});
+    ROW(INVALID, "there is no technique ''", settings->value_count = 1; room.values[0] = (pnb_value){".", 4});
 }
 
 /* Every parameter of every technique at and beyond its ends. */

@@ -67,7 +67,7 @@ static uint32_t random_count(void) {
 #define LIGHT_FLOATS(i)                                                                                                \
     FLOATS(room.lights[i].matrix), FLOATS(room.lights[i].emission), FLOATS(room.lights[i].size),                       \
         FLOATS(room.lights[i].radius), FLOATS(room.lights[i].angle), FLOATS(room.lights[i].spot_angle),                \
-        FLOATS(room.lights[i].spot_blend)
+        FLOATS(room.lights[i].spot_blend), FLOATS(room.lights[i].shadow_color)
 
 static const struct {
     float *first;
@@ -113,6 +113,12 @@ static uint32_t *const counts[] = {
     &room.settings.crop[2],
 };
 
+static const char *technique_id(uint32_t index) {
+    pnb_technique_info technique = PNB_INIT(pnb_technique_info);
+    pnb_technique_get_info(index, &technique);
+    return technique.id;
+}
+
 /* What every scene has another of, within what is allowed. */
 static void vary_room(void) {
     pnb_settings *const settings = &room.settings;
@@ -128,6 +134,8 @@ static void vary_room(void) {
         pnb_light *light = &room.lights[i];
         light->type = (pnb_light_type)random_below(4);
         light->shape = (pnb_area_shape)random_below(2);
+        light->technique = random_below(4) ? NULL : technique_id(random_below(pnb_technique_count()));
+        light->shadow_map_size = random_below(4) ? 0 : 16 + random_below(113);
         for (int j = 0; j < 3; ++j) {
             light->matrix[12 + j] += random_between(-1, 1);
         }

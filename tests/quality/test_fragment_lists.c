@@ -240,11 +240,10 @@ static bool make_lists(struct bench *bench, const struct stage *stage, bool back
     if (!CHECK_RESULT(scene_create(&from, &bench->messages, &scene), PNB_OK))
         return false;
     bench->frame.scene = scene;
-    bench->settings.shadow_map_size = SIDE;
     const struct light_views views = stage_views();
     struct gl_texture map = {0};
     CHECK_RESULT(gpu_scene_update(bench->renderer->scene, &bench->frame), PNB_OK);
-    CHECK_RESULT(pass_shadow_map(&bench->frame, &views, TRANSLUCENCY_ANY, &map), PNB_OK);
+    CHECK_RESULT(pass_shadow_map(&bench->frame, &views, SIDE, TRANSLUCENCY_ANY, &map), PNB_OK);
     bool good =
         CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, CASTERS_ALL, back_faces, 0, &map, "test", lists),
                      PNB_OK) &&

@@ -110,7 +110,6 @@ static void maps_hold_linear_depth(struct bench *bench, int side, bool perspecti
     struct scene *scene;
     CHECK_RESULT(scene_create(&from, &bench->messages, &scene), PNB_OK);
     bench->frame.scene = scene;
-    bench->settings.shadow_map_size = (uint32_t)side;
     const float half = perspective ? 0.625f : 2.5f; /* wider than the plane on three sides, narrower on one */
     struct light_views views = {.count = 1, .single = true};
     views.views[0] = (struct light_view){.rect = {-half, -half, 1 / (1.7f * half), 1 / (2 * half)},
@@ -120,7 +119,7 @@ static void maps_hold_linear_depth(struct bench *bench, int side, bool perspecti
     glm_mat4_identity(views.views[0].from_world);
     struct gl_texture map = {0};
     CHECK_RESULT(gpu_scene_update(bench->renderer->scene, &bench->frame), PNB_OK);
-    CHECK_RESULT(pass_shadow_map(&bench->frame, &views, TRANSLUCENCY_CUT, &map), PNB_OK);
+    CHECK_RESULT(pass_shadow_map(&bench->frame, &views, side, TRANSLUCENCY_CUT, &map), PNB_OK);
     float *depths = read_texture(&bench->backend.gl, &map, 0, GL_DEPTH_COMPONENT, 1);
     int missed = 0;
     const double error = depths ? map_error(&views.views[0], depths, side, &missed) : INFINITY;

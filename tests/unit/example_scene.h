@@ -116,6 +116,9 @@ static inline void example_lights(struct example *example) {
         light->angle = 0.01f;
         light->spot_angle = 1.5f;
         light->spot_blend = 0.25f;
+        light->technique = i == 1 ? "HARD" : i == 2 ? "" : NULL;
+        light->shadow_map_size = 16 * (uint32_t)i;
+        light->shadow_color[i % 3] = 0.125f * (float)i;
     }
 }
 

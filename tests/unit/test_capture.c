@@ -140,8 +140,10 @@ static void everything_survives(void **state) {
         assert_memory_equal(&copy, instance, sizeof copy);
         pnb_light light = scene->lights[i];
         assert_same_text(light.name, example->lights[i].name);
+        assert_same_text(light.technique, example->lights[i].technique);
         light.name = example->lights[i].name;
-        assert_memory_equal(&light, &example->lights[i], offsetof(pnb_light, spot_blend) + sizeof light.spot_blend);
+        light.technique = example->lights[i].technique;
+        assert_memory_equal(&light, &example->lights[i], sizeof light);
         assert_int_equal(scene->slots[i], example->slots[i]);
     }
     assert_ptr_equal(scene->instances[1].mesh, scene->instances[2].mesh); /* shared */
@@ -284,7 +286,7 @@ static void foreign_files_are_refused(void **state) {
     longer[4] = CAPTURE_VERSION + 1;
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
-    assert_error("has format version 5");
+    assert_error("has format version 6");
     memcpy(longer, "BLENDER-v304RENDH", 17);
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
@@ -390,7 +392,7 @@ static void forged_references_are_found(void **state) {
     assert_number_found(fixture, second + 8 + strlen("Left"), 0x80000000u, "unknown flags");
     assert_number_found(fixture, second, UINT32_MAX, "does not exist");
     struct section lights = find_section(&fixture->file, SECTION_LIGHTS);
-    assert_number_found(fixture, lights.start + 4 + strlen("Lamp") + 4, 9, "unknown type 9");
+    assert_number_found(fixture, lights.start + 4 + strlen("Lamp") + 4 + 4, 9, "unknown type 9");
     struct section settings = find_section(&fixture->file, SECTION_SETTINGS);
     size_t technique = settings.start + fields_size(&settings_fields);
     assert_number_found(fixture, technique, 1000, "name");
