@@ -55,7 +55,8 @@ pnb_result pass_irradiance(struct frame *frame, const struct frame_light *light,
     const struct program_desc desc = {
         .vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
         .fragment = "pass_irradiance.frag",
-        .defines = {light_defines(&light->emitter, &light->views), tiles ? "#define TILES\n" : NULL}};
+        .defines = {light_defines(&light->emitter, &light->views), tiles ? "#define TILES\n" : NULL,
+                    frame->scene->light_linked ? "#define LINKS\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Irradiance")) != PNB_OK)

@@ -155,6 +155,43 @@ static void light_flag(void) {
     stage_destroy(&stage);
 }
 
+/* What is reflected at the middle of the picture, on the box. */
+static double middle_light(const struct stage *stage) {
+    return stage->render.combined ? (double)stage->render.combined[4 * (SIDE / 2 * SIDE + SIDE / 2)] : NAN;
+}
+
+/* A box and the floor under two lamps, the second of twice the first's light at the same place: what each lights and is
+ * shadowed by. */
+static void links(void) {
+    static const uint64_t bits[] = {0, 1, 2, 3};
+    double light[4];
+    for (int i = 0; i < 4; i++) {
+        struct stage *stage = stage_create(TEST_LIGHT_POINT);
+        memset(stage->builder.scene.world_color, 0, sizeof stage->builder.scene.world_color);
+        pnb_light *second =
+            builder_key_light(&stage->builder, (const float[3]){0.5f, 0.2f, 4}, (const float[3]){0, 0, 0}, 0.5f);
+        for (int c = 0; c < 3; c++)
+            second->emission[c] = 2 * stage->builder.lights[0].emission[c];
+        add_box(stage)->unlit_by = bits[i];
+        stage_render(stage);
+        light[i] = middle_light(stage);
+        CHECK_AT_MOST(mean_visibility(stage, true), 0.995); /* what is unlit casts its shadow */
+        if (i == 0) {
+            stage->builder.instances[1].unshadowed_by = 3;
+            render_free(&stage->render);
+            stage_render(stage);
+            CHECK(mean_visibility(stage, true) == 1);
+        }
+        stage_destroy(&stage);
+    }
+    printf("box lit by two lamps %.4f, without the first %.4f, the second %.4f, both %.4f\n", light[0], light[1],
+           light[2], light[3]);
+    CHECK_AT_MOST(0.1, light[0]);
+    CHECK_NEAR(light[1], light[0] * 2 / 3, 1e-3);
+    CHECK_NEAR(light[2], light[0] / 3, 1e-3);
+    CHECK(light[3] == 0);
+}
+
 /* ---- Alpha ---- */
 
 /* A sheet from -x to x whose alpha texture is opaque on the left and clear on the right. Interpolated between texels 31
@@ -298,6 +335,7 @@ int main(void) {
     }
     no_receive_is_for_one();
     light_flag();
+    links();
     alpha();
     mirrored();
     flattened();
