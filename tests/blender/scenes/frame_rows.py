@@ -111,8 +111,7 @@ def camera_scaled_and_parented(stage):
     stage.camera.scale = 2, 0.5, 3
 
 
-# The cut is one more outline, over a darker floor.
-@row('frame', light=0.035)
+@row('frame')
 def clip_planes(stage):
     """Near and far planes cut the cube and the floor."""
     stage.cube(half=0.8)

@@ -91,10 +91,6 @@ def paint(stage, material):
     stage.floor.data.materials.append(material)
 
 
-# Pictures of squares are full of outlines: of 36 samples a pixel is half of one off on each, a tenth of the pixels here.
-SQUARES = 0.035
-
-
 @row('materials')
 def principled_value(stage):
     """Principled: base colour."""
@@ -160,8 +156,7 @@ def mix_diffuse(stage):
     paint(stage, nodes.surface(mix.outputs[0]))
 
 
-# A shadow map holds a whole shadow or none: the cube is seen through, but its shadow is not thinned.
-@row('materials', coverage=0.03, light=0.05)
+@row('materials')
 def mix_transparent(stage):
     """Mix of Transparent and Diffuse by value, casting no shadow."""
     nodes = Nodes()
@@ -172,7 +167,7 @@ def mix_transparent(stage):
     stage.cube(material=nodes.surface(mix.outputs[0])).visible_shadow = False
 
 
-@row('materials', coverage=0.01)
+@row('materials')
 def mix_transparent_by_image(stage):
     """Mix of Transparent and Diffuse by an image of black and white: holes that let light through."""
     nodes = Nodes()
@@ -196,7 +191,7 @@ def add_shaders(stage):
     stage.for_cycles = lambda: _lights_nothing(nodes.material)
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def image_srgb(stage):
     """A byte image in sRGB."""
     textured(stage, picture())
@@ -208,14 +203,13 @@ def image_linear(stage):
     textured(stage, picture(float_buffer=True), interpolation='Linear')
 
 
-# Half of the floor is black: what is left counts double.
-@row('materials', light=2 * SQUARES)
+@row('materials')
 def image_clipped(stage):
     """Beyond its edges the image is black."""
     _beyond(stage, 'CLIP')
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def image_extended(stage):
     """Beyond its edges the image goes on with its last texels."""
     _beyond(stage, 'EXTEND')
@@ -231,26 +225,26 @@ def _beyond(stage, extension):
     textured(stage, picture(), change=change, extension=extension)
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def image_non_color(stage):
     """A byte image that is data."""
     textured(stage, picture(color_space='Non-Color'))
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def image_float(stage):
     """A float image in linear space."""
     textured(stage, picture(float_buffer=True))
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def image_other_space(stage):
     """A byte image in another colour space than sRGB, with other primaries."""
     spaces = bpy.types.ColorManagedInputColorspaceSettings.bl_rna.properties['name'].enum_items.keys()
     textured(stage, picture(color_space=next(name for name in ('Display P3', 'Linear ACEScg') if name in spaces)))
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def image_packed(stage):
     """An image packed into the .blend, whose file is gone."""
     image = picture()
@@ -270,7 +264,7 @@ def image_missing(stage):
     textured(stage, image)
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def image_udim(stage):
     """A tiled image: the first tile."""
     tile = picture()
@@ -283,7 +277,7 @@ def image_udim(stage):
     textured(stage, image)
 
 
-@row('materials', coverage=0.02)
+@row('materials')
 def image_alpha(stage):
     """Principled alpha from an image's alpha channel: holes that let light through."""
     nodes = Nodes()
@@ -306,7 +300,7 @@ def image_emission(stage):
     stage.for_cycles = lambda: _lights_nothing(nodes.material)
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def uv_map_node(stage):
     """A UV Map node names another map than the active one."""
     def change(nodes, texture):
@@ -318,7 +312,7 @@ def uv_map_node(stage):
         unwrap(ob, "Other", scale=0.5, turn=True)
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def two_uv_maps(stage):
     """Two materials of one mesh with a map each."""
     def change(nodes, texture):
@@ -338,7 +332,7 @@ def two_uv_maps(stage):
         unwrap(ob, "Other", scale=0.5, turn=True)
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def mapping_node(stage):
     """A Mapping node moves, turns and scales the picture."""
     def change(nodes, texture):
@@ -351,7 +345,7 @@ def mapping_node(stage):
     textured(stage, picture(), change=change)
 
 
-@row('materials', light=SQUARES)
+@row('materials')
 def mapping_as_texture(stage):
     """A Mapping node of the kind Texture: inverse."""
     def change(nodes, texture):
@@ -365,13 +359,13 @@ def mapping_as_texture(stage):
     textured(stage, picture(), change=change)
 
 
-@row('materials', light=0.05)
+@row('materials')
 def vertex_colours_bytes(stage):
     """A Color Attribute node: bytes of corners."""
     _vertex_colors(stage, 'CORNER', 'BYTE_COLOR', 'VertexColor')
 
 
-@row('materials', light=0.05)
+@row('materials')
 def vertex_colours_floats(stage):
     """An Attribute node: floats of vertices."""
     _vertex_colors(stage, 'POINT', 'FLOAT_COLOR', 'Attribute')
@@ -435,23 +429,27 @@ def backface_culling_camera(stage):
     stage.for_cycles = lambda: _cull(nodes)
 
 
-def _cull(nodes):
+def _cull(nodes, seen_from_light=False):
+    """Cycles' shadow rays come from what is lit: its front faces are those whose backs the light sees."""
     mix, geometry = nodes.add('MixShader'), nodes.add('NewGeometry')
+    shader = nodes.output.inputs['Surface'].links[0].from_socket
+    clear = nodes.add('BsdfTransparent').outputs[0]
     nodes.link(geometry.outputs['Backfacing'], mix.inputs[0])
-    nodes.link(nodes.output.inputs['Surface'].links[0].from_socket, mix.inputs[1])
-    nodes.link(nodes.add('BsdfTransparent').outputs[0], mix.inputs[2])
+    nodes.link(clear if seen_from_light else shader, mix.inputs[1])
+    nodes.link(shader if seen_from_light else clear, mix.inputs[2])
     nodes.surface(mix.outputs[0])
 
 
 @row('materials', since=(4, 2))
 def backface_culling_shadow(stage):
-    """Back faces, seen from the light, cast no shadow: a plane turned away."""
+    """Back faces, seen from the light, cast no shadow: a plane turned away, beside one turned to the light."""
     nodes = Nodes()
     material = nodes.surface(nodes.add('BsdfDiffuse').outputs[0])
     material.use_backface_culling_shadow = True
-    stage.show(add_plane("Away", half=0.5, location=(0, 0, 1), rotation=(radians(180), 0, 0)), material)
-    bpy.data.objects["Away"].visible_camera = False
-    stage.for_cycles = lambda: _cull(nodes)
+    for name, x, turn in (("Away", -0.5, 180), ("Towards", 0.6, 0)):
+        plane = stage.show(add_plane(name, half=0.4, location=(x, 0, 1), rotation=(radians(turn), 0, 0)), material)
+        plane.visible_camera = False
+    stage.for_cycles = lambda: _cull(nodes, seen_from_light=True)
 
 
 @row('materials')
