@@ -6,6 +6,8 @@
 // A pass over tiles has no pixel, and uses no footprint.
 #ifdef WHOLE_TILES
 const vec2 footprint_pixel = vec2(0.5);
+#elif defined(EVERY_OTHER_PIXEL)
+#define footprint_pixel subsampled_fragment()
 #else
 #define footprint_pixel gl_FragCoord.xy
 #endif

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Visibility of one light at every pixel, by the technique's function `vec3 technique_visibility(receiver r)`.
 // Output: rgb = visibility times weight, a = weight; a = 0 where the light does not reach.
+#ifdef EVERY_OTHER_PIXEL
+#include "common_subsampling.glsl"
+#endif
 #include "common_camera.glsl"
 #include "common_steady.glsl"
 #include "common_light.glsl"
@@ -12,7 +15,11 @@ uniform sampler2D gbuffer_depth, gbuffer_normal;
 layout(location = 0) out vec4 out_visibility;
 
 void main() {
+#ifdef EVERY_OTHER_PIXEL
+    vec2 coordinate = camera_pixel(subsampled_fragment());
+#else
     vec2 coordinate = camera_pixel(gl_FragCoord.xy);
+#endif
     ivec2 pixel = ivec2(coordinate); // in the G-buffer
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
     out_visibility = vec4(0.0);

@@ -34,10 +34,15 @@ static pnb_result ensure_gbuffer(struct renderer *renderer, int width, int heigh
 
 /* The G-buffer is that of the full image, whatever the crop, so that pixels do not depend on it to the last bit; only
  * the crop of it is drawn when no more is needed. */
-static void scissor_crop(const struct gl *gl, const struct settings *settings) {
-    const GLint *crop = (const GLint *)settings->crop;
+static void scissor_crop(const struct frame *frame) {
+    const struct gl *gl = frame->gl;
+    const GLint *crop = (const GLint *)frame->settings->crop;
+    GLint border = 0; /* pixels beside the crop are interpolated from, too */
+    for (uint32_t i = 0; i < frame->scene->light_count; i++)
+        if (technique_subsamples(frame->lights[i].technique, frame->lights[i].parameters))
+            border = 1;
     gl->Enable(GL_SCISSOR_TEST);
-    gl->Scissor(crop[0], crop[1], crop[2], crop[3]);
+    gl->Scissor(crop[0] - border, crop[1] - border, crop[2] + 2 * border, crop[3] + 2 * border);
 }
 
 pnb_result pass_gbuffer(struct frame *frame, bool whole) {
@@ -59,7 +64,7 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
     if (!whole)
-        scissor_crop(gl, frame->settings);
+        scissor_crop(frame);
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthMask(GL_TRUE);
     gl->Disable(GL_BLEND);

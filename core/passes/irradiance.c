@@ -24,8 +24,12 @@ pnb_result ensure_irradiance(struct frame *frame) {
 }
 
 void test_drawn(struct frame *frame) {
+    test_depth(frame, frame->reuses);
+}
+
+void test_depth(struct frame *frame, bool on) {
     const struct gl *gl = frame->gl;
-    if (!frame->reuses) {
+    if (!on) {
         gl->Disable(GL_DEPTH_TEST);
         return;
     }

@@ -41,6 +41,9 @@ struct renderer {
     struct gl_texture key_depth, key_normal; /* the G-buffer's of the key sample, reuse.c */
     struct gl_texture
         visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
+    /* With SUBSAMPLING_PARAMETER: visibility of every other pixel, RGBA16F, and where it cannot be interpolated,
+     * DEPTH_COMPONENT32F, W x H, see subsampling.c. */
+    struct gl_texture coarse_visibility, pending;
     /* Of the sample being drawn, W x H: sums over the lights, RGBA32F, with and without shadows; and what is drawn
      * anew, DEPTH_COMPONENT32F, see reuse.c. The last two exist if they are wanted. */
     struct gl_texture irradiance, unshadowed_irradiance, drawn;
@@ -123,12 +126,20 @@ pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums,
 pnb_result pass_planes(struct frame *frame, struct frame_light *light);
 /* visibility.c: G-buffer, map, min_max -> renderer.visibility, by the technique; tiles: of undecided ones only. */
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles);
+/* subsampling.c: makes coarse_visibility and pending, or frees them if they are not wanted. */
+pnb_result ensure_subsampling(struct frame *frame, bool wanted);
+/* Gives the current program what says which pixel a texel of coarse_visibility is. */
+void bind_subsampling(struct frame *frame, GLuint program);
+/* G-buffer, coarse_visibility -> visibility, where it can be interpolated; pending: 1 where it cannot, 0.5 elsewhere. */
+pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light);
 /* irradiance.c: makes the sample's sums over the lights; adds to them one light's irradiance times visibility, that of
  * the tile where it is decided, and to the light's share of the shadow pass. first: replaces what the sums held. */
 pnb_result ensure_irradiance(struct frame *frame);
 pnb_result pass_irradiance(struct frame *frame, const struct frame_light *light, bool first, enum tiles tiles);
 /* Sets the depth test by which a light's passes draw only the pixels that are not reused. */
 void test_drawn(struct frame *frame);
+/* The same test for any texture with 1 where passes draw, or none. */
+void test_depth(struct frame *frame, bool on);
 /* reuse.c: how many samples are lit at every pixel, and whether this one is. */
 uint32_t reuse_key_count(const struct frame *frame);
 bool reuse_is_key(const struct frame *frame);

@@ -100,28 +100,50 @@ void bind_technique(struct frame *frame, const struct frame_light *light, GLuint
         light->technique->bind(frame, light, program, 5);
 }
 
-pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles) {
+/* The pixels that are drawn: all that are wanted, every other one of both axes, or those that are pending. */
+enum pixels { PIXELS_WANTED, PIXELS_EVERY_OTHER, PIXELS_PENDING };
+
+static pnb_result draw_pixels(struct frame *frame, const struct frame_light *light, enum tiles tiles,
+                              enum pixels pixels) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
+    const bool coarse = pixels == PIXELS_EVERY_OTHER;
     const struct program_desc desc = {.vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
                                       .fragment = "pass_visibility.frag",
                                       .technique = light->technique->shader,
                                       .defines = {light_defines(&light->emitter, &light->views),
-                                                  technique_defines(light), fragment_defines(frame->scene)}};
+                                                  technique_defines(light), fragment_defines(frame->scene),
+                                                  coarse ? "#define EVERY_OTHER_PIXEL\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
         return result;
-    const struct gl_target target = {
-        .colors = {&renderer->visibility}, .color_count = 1, .depth = if_made(&renderer->drawn)};
+    const struct gl_texture *depth = pixels == PIXELS_WANTED    ? if_made(&renderer->drawn)
+                                     : pixels == PIXELS_PENDING ? &renderer->pending
+                                                                : NULL;
+    const struct gl_texture *output = coarse ? &renderer->coarse_visibility : &renderer->visibility;
+    const struct gl_target target = {.colors = {output}, .color_count = 1, .depth = depth};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
-    test_drawn(frame);
+    test_depth(frame, pixels == PIXELS_PENDING || (pixels == PIXELS_WANTED && frame->reuses));
     gl->Disable(GL_BLEND);
     bind_gbuffer(renderer, program);
     bind_steady(frame, program);
+    bind_subsampling(frame, program);
     bind_technique(frame, light, program);
     draw_over(frame, program, tiles, true);
-    timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
+    timer_end(&renderer->timer, gl_texture_bytes(output));
     return gl_check(gl, "visibility");
+}
+
+pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles) {
+    /* Between keys few pixels are drawn, and hardly any with all its neighbours. */
+    const bool subsampled = technique_subsamples(light->technique, light->parameters) &&
+                            tiles == TILES_NONE && reuse_is_key(frame);
+    if (!subsampled)
+        return draw_pixels(frame, light, tiles, PIXELS_WANTED);
+    pnb_result result = draw_pixels(frame, light, tiles, PIXELS_EVERY_OTHER);
+    if (result == PNB_OK)
+        result = pass_interpolate(frame, light);
+    return result == PNB_OK ? draw_pixels(frame, light, tiles, PIXELS_PENDING) : result;
 }

@@ -54,6 +54,8 @@ void renderer_destroy(struct renderer **out) {
                                            &renderer->gbuffer_color,
                                            &renderer->gbuffer_z,
                                            &renderer->visibility,
+                                           &renderer->coarse_visibility,
+                                           &renderer->pending,
                                            &renderer->combined,
                                            &renderer->shadowed,
                                            &renderer->unshadowed,
@@ -185,6 +187,9 @@ static pnb_result draw_light(struct frame *frame, uint32_t index, bool first) {
     /* A technique that adds up many samples needs single precision; one that writes its result does not. */
     const GLenum format = light->technique->draw ? GL_RGBA32F : GL_RGBA16F;
     result = gl_texture_ensure(frame->gl, &renderer->visibility, format, frame->width, frame->height, 0, 1);
+    if (result != PNB_OK)
+        return result;
+    result = ensure_subsampling(frame, technique_subsamples(light->technique, light->parameters));
     if (result != PNB_OK)
         return result;
     light_block_upload(renderer, &light->emitter, &light->views);

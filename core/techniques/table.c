@@ -34,9 +34,17 @@ int technique_parameter(const struct technique *technique, const char *name) {
     return -1;
 }
 
+static bool is_on(const struct technique *technique, const char *parameter, const double *parameters) {
+    const int index = technique_parameter(technique, parameter);
+    return index >= 0 && parameters[index] > 0.0;
+}
+
 bool technique_skips(const struct technique *technique, const double *parameters) {
-    const int skip = technique_parameter(technique, SKIP_PARAMETER);
-    return skip >= 0 && parameters[skip] > 0.0;
+    return is_on(technique, SKIP_PARAMETER, parameters);
+}
+
+bool technique_subsamples(const struct technique *technique, const double *parameters) {
+    return is_on(technique, SUBSAMPLING_PARAMETER, parameters);
 }
 
 uint32_t pnb_technique_count(void) {

@@ -25,6 +25,10 @@ enum technique_needs {
  * image that are decided by the min-max pyramid are not drawn by the technique. */
 #define SKIP_PARAMETER "min_max"
 
+/* Parameter of a technique that, if it is on, is drawn at every other pixel of both axes and interpolated in between
+ * where neighbours show one surface in much the same light: subsampling.c. Not together with SKIP_PARAMETER. */
+#define SUBSAMPLING_PARAMETER "subsampling"
+
 struct technique {
     const char *id, *label, *description, *paper;
     const struct parameter *parameters; /* ends with a NULL name; each is a uniform `p_<name>` of the shader */
@@ -57,5 +61,8 @@ int technique_index(const struct technique *technique);
 int technique_parameter(const struct technique *technique, const char *name);
 /* Whether the SKIP_PARAMETER is there and on. */
 bool technique_skips(const struct technique *technique, const double *parameters);
+
+/* Whether the SUBSAMPLING_PARAMETER is there and on. */
+bool technique_subsamples(const struct technique *technique, const double *parameters);
 
 #endif
