@@ -3,6 +3,7 @@
 // list gets as much room as its four sources have together, and what merging saves stays unused; or, where that would be too
 // much, it is merged twice: COUNT to know its length, FILL to store it.
 #include "common_fragments.glsl"
+#include "common_accumulation.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430, binding = 4) buffer cursor_block {
@@ -21,14 +22,6 @@ uniform int phase; // STORE, or COUNT and FILL
 uniform int by_reference; // 1: takes the list of the first source as it is
 
 const int STORE = 0, COUNT = 1, FILL = 2;
-const int ADD = 0, MULTIPLY = 1, MAXIMUM = 2;
-
-// Of two fragments one behind the other.
-OPACITY accumulate(OPACITY a, OPACITY b) {
-    if (ACCUMULATION == ADD)
-        return min(a + b, OPACITY(1.0));
-    return ACCUMULATION == MULTIPLY ? 1.0 - (1.0 - a) * (1.0 - b) : max(a, b);
-}
 
 uvec2 source_list(ivec3 texel) { // first and last + 1
     if (any(lessThan(texel, ivec3(0))) || any(greaterThanEqual(texel.xy, ivec2(source_side))))

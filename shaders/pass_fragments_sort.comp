@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sorts each list by depth, in place (Shell 1959 with Knuth's gaps: an insertion sort while lists are short).
+// Sorts each list by depth, in place (Shell 1959 with Knuth's gaps: an insertion sort while lists are short). With JOIN
+// surfaces that lie close behind one another become one (Selgrad et al. 2015, section 4.1).
 #include "common_fragments.glsl"
 
 layout(local_size_x = 64) in;
 uniform uint head_count;
 uniform uint most; // fragments of a list that are kept, 0: all
+#ifdef JOIN
+#include "common_accumulation.glsl"
+uniform float distances[6]; // of each view, within which depths are joined: metres, at depth 1 in perspective
+uniform int perspective;
+uniform uint texels;        // lists of a view
+#endif
 
 struct entry {
     uint words[FRAGMENT_WORDS];
@@ -46,6 +53,26 @@ void insert(uint first, uint position, uint gap) {
     store(first + position, e);
 }
 
+#ifdef JOIN
+// Joins what lies within `near` of the first of several; gives the number of fragments left.
+uint join(uint first, uint count, float near) {
+    uint kept = 0u;
+    for (uint i = 0u; i < count;) {
+        float base = fragment_depth(first + i), sum = 0.0, joined = 0.0;
+        float last = base + near * (perspective == 1 ? base : 1.0);
+        OPACITY opacity = OPACITY(0.0);
+        for (; i < count && fragment_depth(first + i) <= last; i++) {
+            sum += fragment_depth(first + i) - base;
+            joined += 1.0;
+            opacity = accumulate(opacity, fragment_opacity(first + i));
+        }
+        fragment_store(first + kept, base + sum / joined, opacity);
+        kept++;
+    }
+    return kept;
+}
+#endif
+
 void main() {
     uint head = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (head >= head_count)
@@ -57,6 +84,8 @@ void main() {
     for (; gap > 0u; gap /= 3u)
         for (uint position = gap; position < count; position++)
             insert(first, position, gap);
-    if (most > 0u)
-        heads[2u * head + 1u] = min(count, most);
+#ifdef JOIN
+    count = join(first, count, distances[head / texels]);
+#endif
+    heads[2u * head + 1u] = most > 0u ? min(count, most) : count;
 }

@@ -73,11 +73,9 @@ enum phase { STORE, COUNT, FILL };
 static pnb_result merge_level(struct frame *frame, const struct fragment_level *level, const struct light_views *views,
                               const struct fragment_filter *filter, enum phase phase, struct fragment_lists *lists,
                               uint32_t cursor[2]) {
-    static const char *const accumulations[] = {"#define ACCUMULATION 0\n", "#define ACCUMULATION 1\n",
-                                                "#define ACCUMULATION 2\n"};
     const struct gl *gl = frame->gl;
     const struct program_desc desc = {.compute = "pass_fragments_merge.comp",
-                                      .defines = {fragment_defines(frame->scene), accumulations[filter->accumulation]}};
+                                      .defines = {fragment_defines(frame->scene), accumulation_define(filter->accumulation)}};
     GLuint program;
     pnb_result result = program_use(&frame->renderer->programs, &desc, &program);
     if (result != PNB_OK)

@@ -22,8 +22,8 @@ void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists) {
     lists->count = 0;
 }
 
-static pnb_result use_programs(struct frame *frame, const struct light_views *views, bool collect,
-                               enum casters casters, int layer, int side, const mat4 clip, GLuint programs[2]) {
+static pnb_result use_programs(struct frame *frame, const struct light_views *views, bool collect, enum casters casters,
+                               int layer, int side, const mat4 clip, GLuint programs[2]) {
     const struct light_view *view = &views->views[layer];
     static const char *const defines[2][2] = {{NULL, "#define SPECIAL\n"},
                                               {"#define COLLECT\n", "#define COLLECT\n#define SPECIAL\n"}};
@@ -48,8 +48,8 @@ static pnb_result use_programs(struct frame *frame, const struct light_views *vi
 }
 
 /* Counts or collects the fragments of one view. */
-static pnb_result draw_view(struct frame *frame, const struct light_views *views, bool collect, enum casters casters,
-                            bool back_faces, const struct gl_texture *map, int layer) {
+static pnb_result draw_view(struct frame *frame, const struct light_views *views, bool collect,
+                            const struct fragment_choice *choice, const struct gl_texture *map, int layer) {
     struct renderer *renderer = frame->renderer;
     const struct gl_target target = {.depth = map, .layer = layer};
     pnb_result result = gl_target_bind(frame->gl, renderer->framebuffer, &target);
@@ -59,14 +59,17 @@ static pnb_result draw_view(struct frame *frame, const struct light_views *views
     light_view_projection(&views->views[layer], projection);
     glm_mat4_mul(projection, (vec4 *)views->views[layer].from_world, clip);
     GLuint programs[2];
-    if ((result = use_programs(frame, views, collect, casters, layer, map->width, clip, programs)) != PNB_OK)
+    result = use_programs(frame, views, collect, choice->casters, layer, map->width, clip, programs);
+    if (result != PNB_OK)
         return result;
-    const struct draw_programs draw = {programs[0], programs[1], casters, PNB_MATERIAL_CULL_SHADOW, back_faces};
+    const struct draw_programs draw = {programs[0], programs[1], choice->casters, PNB_MATERIAL_CULL_SHADOW,
+                                       choice->back_faces};
     return gpu_scene_draw(renderer->scene, clip, PNB_INSTANCE_NO_SHADOW, (uint64_t)1 << frame->light, &draw);
 }
 
-static pnb_result draw_views(struct frame *frame, const struct light_views *views, bool collect, enum casters casters,
-                             bool back_faces, const struct gl_texture *map, const struct fragment_lists *lists) {
+static pnb_result draw_views(struct frame *frame, const struct light_views *views, bool collect,
+                             const struct fragment_choice *choice, const struct gl_texture *map,
+                             const struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
     pnb_result result = timer_begin(&frame->renderer->timer, collect ? "Fragment collect" : "Fragment count");
     gl->Disable(GL_DEPTH_TEST);
@@ -75,7 +78,7 @@ static pnb_result draw_views(struct frame *frame, const struct light_views *view
     if (views->clip_behind)
         gl->Enable(GL_CLIP_DISTANCE0);
     for (int i = 0; i < views->count && result == PNB_OK; i++)
-        result = draw_view(frame, views, collect, casters, back_faces, map, i);
+        result = draw_view(frame, views, collect, choice, map, i);
     gl->Disable(GL_CLIP_DISTANCE0);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     timer_end(&frame->renderer->timer, collect ? lists->fragments.bytes : lists->heads.bytes);
@@ -85,18 +88,15 @@ static pnb_result draw_views(struct frame *frame, const struct light_views *view
 /* Groups in one row of a dispatch: OpenGL guarantees 65535. */
 #define MOST_GROUPS 16384u
 
-/* A pass over every list. */
-static pnb_result dispatch(struct frame *frame, const char *name, const char *shader, uint32_t heads,
-                           uint32_t per_group, uint32_t most, const struct fragment_lists *lists) {
+/* A pass over every list, whose program is current. */
+static pnb_result dispatch(struct frame *frame, const char *name, GLuint program, uint32_t heads, uint32_t per_group,
+                           const struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
-    const struct program_desc desc = {.compute = shader, .defines = {fragment_defines(frame->scene)}};
-    GLuint program;
-    pnb_result result = program_use(&frame->renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&frame->renderer->timer, name)) != PNB_OK)
+    pnb_result result = timer_begin(&frame->renderer->timer, name);
+    if (result != PNB_OK)
         return result;
     fragment_lists_bind(gl, lists);
     gl->Uniform1ui(gl->GetUniformLocation(program, "head_count"), heads);
-    gl->Uniform1ui(gl->GetUniformLocation(program, "most"), most);
     const uint32_t groups = (heads + per_group - 1) / per_group;
     gl->DispatchCompute(groups < MOST_GROUPS ? groups : MOST_GROUPS, (groups + MOST_GROUPS - 1) / MOST_GROUPS, 1);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -111,7 +111,12 @@ static pnb_result scan(struct frame *frame, uint32_t heads, struct fragment_list
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, cursor);
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, &zero, GL_STREAM_READ);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, cursor);
-    pnb_result result = dispatch(frame, "Fragment scan", "pass_fragments_scan.comp", heads, 256 * 16, 0, lists);
+    const struct program_desc desc = {.compute = "pass_fragments_scan.comp",
+                                      .defines = {fragment_defines(frame->scene)}};
+    GLuint program;
+    pnb_result result = program_use(&frame->renderer->programs, &desc, &program);
+    if (result == PNB_OK)
+        result = dispatch(frame, "Fragment scan", program, heads, 256 * 16, lists);
     if (result != PNB_OK)
         return result;
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, cursor);
@@ -119,8 +124,35 @@ static pnb_result scan(struct frame *frame, uint32_t heads, struct fragment_list
     return PNB_OK;
 }
 
-pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
-                               bool back_faces, uint32_t most, const struct gl_texture *map, const char *what,
+const char *accumulation_define(int accumulation) {
+    static const char *const defines[] = {"#define ACCUMULATION 0\n", "#define ACCUMULATION 1\n",
+                                          "#define ACCUMULATION 2\n"};
+    return defines[accumulation];
+}
+
+static pnb_result sort(struct frame *frame, const struct light_views *views, const struct fragment_choice *choice,
+                       uint32_t heads, const struct fragment_lists *lists) {
+    const struct gl *gl = frame->gl;
+    const bool joins = choice->joined > 0.0f;
+    const struct program_desc desc = {.compute = "pass_fragments_sort.comp",
+                                      .defines = {fragment_defines(frame->scene), joins ? "#define JOIN\n" : NULL,
+                                                  joins ? accumulation_define(choice->accumulation) : NULL}};
+    GLuint program;
+    pnb_result result = program_use(&frame->renderer->programs, &desc, &program);
+    if (result != PNB_OK)
+        return result;
+    float distances[MAX_LIGHT_VIEWS] = {0};
+    for (int i = 0; i < views->count; i++)
+        distances[i] = choice->joined * views->views[i].texel;
+    gl->Uniform1fv(gl->GetUniformLocation(program, "distances"), MAX_LIGHT_VIEWS, distances);
+    gl->Uniform1ui(gl->GetUniformLocation(program, "texels"), heads / (uint32_t)views->count);
+    gl->Uniform1ui(gl->GetUniformLocation(program, "most"), choice->most);
+    program_set_int(gl, program, "perspective", views->views[0].perspective != 0.0f);
+    return dispatch(frame, "Fragment sort", program, heads, 64, lists);
+}
+
+pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views,
+                               const struct fragment_choice *choice, const struct gl_texture *map, const char *what,
                                struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
     const uint64_t heads = (uint64_t)map->width * (uint64_t)map->width * (uint64_t)views->count;
@@ -130,13 +162,13 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
     if (result != PNB_OK)
         return result;
     gl_buffer_clear(gl, &lists->heads, heads * 8);
-    if (back_faces)
+    if (choice->back_faces)
         gpu_scene_find_solids(frame->renderer->scene, frame->scene);
-    if ((result = draw_views(frame, views, false, casters, back_faces, map, lists)) != PNB_OK ||
+    if ((result = draw_views(frame, views, false, choice, map, lists)) != PNB_OK ||
         (result = scan(frame, (uint32_t)heads, lists)) != PNB_OK ||
         (result = gl_buffer_ensure(gl, &lists->fragments, lists->count * fragment_size(frame->scene), 0, what)) !=
             PNB_OK ||
-        (result = draw_views(frame, views, true, casters, back_faces, map, lists)) != PNB_OK)
+        (result = draw_views(frame, views, true, choice, map, lists)) != PNB_OK)
         return result;
-    return dispatch(frame, "Fragment sort", "pass_fragments_sort.comp", (uint32_t)heads, 64, most, lists);
+    return sort(frame, views, choice, (uint32_t)heads, lists);
 }

@@ -72,12 +72,20 @@ void draw_over(struct frame *frame, GLuint program, enum tiles tiles, bool undec
 enum translucency { TRANSLUCENCY_CUT, TRANSLUCENCY_STOCHASTIC, TRANSLUCENCY_OPAQUE, TRANSLUCENCY_ANY };
 pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views, int side,
                            enum translucency translucency, struct gl_texture *map);
-/* fragment_lists.c: casters -> lists, sorted by depth: of all that cast shadows, or of what is neither opaque nor
- * clear. Draws at the size of `map`, which it leaves as it is. most: of each list the nearest so many are kept, 0: all.
- * back_faces: without the front faces of solid bodies. what: for messages, names the light. */
-pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views, enum casters casters,
-                               bool back_faces, uint32_t most, const struct gl_texture *map, const char *what,
+/* fragment_lists.c: casters -> lists, sorted by depth. Draws at the size of `map`, which it leaves as it is. what: for
+ * messages, names the light. */
+struct fragment_choice {
+    enum casters casters; /* all that cast shadows, or what is neither opaque nor clear */
+    bool back_faces;      /* without the front faces of solid bodies */
+    float joined;         /* depths so close become one, in texels; 0: none */
+    int accumulation;     /* of what is joined, as in struct fragment_filter */
+    uint32_t most;        /* of each list the nearest so many are kept, 0: all */
+};
+pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *views,
+                               const struct fragment_choice *choice, const struct gl_texture *map, const char *what,
                                struct fragment_lists *lists);
+/* The define that tells shaders how opacity is accumulated. */
+const char *accumulation_define(int accumulation);
 void fragment_lists_bind(const struct gl *gl, const struct fragment_lists *lists);
 void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists);
 /* fragment_filter.c: lists of a map of so many texels per side -> further levels of them. */
@@ -130,7 +138,8 @@ pnb_result pass_visibility(struct frame *frame, const struct frame_light *light,
 pnb_result ensure_subsampling(struct frame *frame, bool wanted);
 /* Gives the current program what says which pixel a texel of coarse_visibility is. */
 void bind_subsampling(struct frame *frame, GLuint program);
-/* G-buffer, coarse_visibility -> visibility, where it can be interpolated; pending: 1 where it cannot, 0.5 elsewhere. */
+/* G-buffer, coarse_visibility -> visibility, where it can be interpolated; pending: 1 where it cannot, 0.5 elsewhere.
+ */
 pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light);
 /* irradiance.c: makes the sample's sums over the lights; adds to them one light's irradiance times visibility, that of
  * the tile where it is decided, and to the light's share of the shadow pass. first: replaces what the sums held. */

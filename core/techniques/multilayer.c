@@ -14,7 +14,9 @@ enum {
     MERGE_ACCUMULATION,
     LOOKUP_ACCUMULATION,
     BASE_SUBSAMPLING,
-    FACES
+    FACES,
+    BASE_MERGE_DISTANCE,
+    SUBSAMPLING
 };
 
 static const char *const pyramids[] = {"MIP_MAP", "Y_MAP", NULL};
@@ -111,12 +113,25 @@ static const struct parameter parameters[] = {
                .maximum = 1,
                .default_value = ALL_FACES,
                .items = face_choices},
+    [BASE_MERGE_DISTANCE] = {.name = "base_merge_distance",
+                             .label = "Base Merge Distance",
+                             .description =
+                                 "Surfaces of one texel of the map itself that lie closer to one another in depth "
+                                 "become one, before any are left out; in widths of the texel, 0: none",
+                             .unit = "texels",
+                             .type = PNB_FLOAT,
+                             .maximum = 100},
+    [SUBSAMPLING] = {.name = SUBSAMPLING_PARAMETER,
+                     .label = "Image Sub-Sampling",
+                     .description = "Shadows of every other pixel, and between them only where surfaces or shadows "
+                                    "have edges: faster, the more so the larger the image",
+                     .unit = "",
+                     .type = PNB_BOOL,
+                     .maximum = 1},
     {0}};
 
 static const char *multilayer_defines(const double *values) {
-    static const char *const defines[] = {"#define ACCUMULATION 0\n", "#define ACCUMULATION 1\n",
-                                          "#define ACCUMULATION 2\n"};
-    return defines[(int)values[LOOKUP_ACCUMULATION]];
+    return accumulation_define((int)values[LOOKUP_ACCUMULATION]);
 }
 
 /* Side of the square with the emitter's area. */
@@ -139,8 +154,13 @@ static pnb_result multilayer_prefilter(struct frame *frame, struct frame_light *
                                            .light_size = light_size(&light->emitter)};
     char what[128];
     snprintf(what, sizeof what, "MULTILAYER, surfaces before light '%.64s'", light->source->name);
-    pnb_result result = pass_fragment_lists(frame, &light->views, CASTERS_ALL, (int)values[FACES] == BACK_FACES,
-                                            (uint32_t)values[DEPTH_LAYERS], &light->shadow_map, what, &light->lists);
+    const struct fragment_choice choice = {.casters = CASTERS_ALL,
+                                           .back_faces = (int)values[FACES] == BACK_FACES,
+                                           .joined = (float)values[BASE_MERGE_DISTANCE],
+                                           .accumulation = (int)values[MERGE_ACCUMULATION],
+                                           .most = (uint32_t)values[DEPTH_LAYERS]};
+    pnb_result result =
+        pass_fragment_lists(frame, &light->views, &choice, &light->shadow_map, what, &light->lists);
     if (result == PNB_OK)
         result = pass_fragment_filter(frame, &light->views, &filter, light->shadow_map.width, what, &light->lists);
     return result;

@@ -107,8 +107,8 @@ static pnb_result draw_sample(struct frame *frame, const struct frame_light *lig
     if (shadows)
         result = pass_shadow_map(frame, &views, light->map_size, TRANSLUCENCY_OPAQUE, &maps->opaque);
     if (result == PNB_OK && shadows && frame->scene->translucent)
-        result = pass_fragment_lists(frame, &views, CASTERS_TRANSLUCENT, false, 0, &maps->opaque,
-                                     "translucent surfaces", &maps->translucent);
+        result = pass_fragment_lists(frame, &views, &(struct fragment_choice){.casters = CASTERS_TRANSLUCENT},
+                                     &maps->opaque, "translucent surfaces", &maps->translucent);
     if (result != PNB_OK)
         return result;
     light_block_upload(frame->renderer, &point, &views);

@@ -38,11 +38,16 @@ static int different_pixels(const struct render *full, const struct render *part
     return different;
 }
 
-static void crops(const char *scene_name, enum test_light light, const char *technique, uint32_t samples) {
+/* parameter: one to switch on, or NULL. */
+static void crops(const char *scene_name, enum test_light light, const char *technique, uint32_t samples,
+                  const char *parameter) {
     struct test_scene *test = quality_scene(scene_name, light, 0, NAN);
     const pnb_scene *scene = test_scene_get(test);
     pnb_settings settings = quality_scene_settings(technique, test, 101);
     settings.samples = samples;
+    const pnb_value on = {parameter, 1};
+    settings.values = &on;
+    settings.value_count = parameter ? 1 : 0;
     settings.light_samples = 2;
     settings.shadow_map_size = 256;
     settings.passes = PNB_PASS_COMBINED | PNB_PASS_DEPTH | PNB_PASS_NORMAL | PNB_PASS_SHADOW | PNB_PASS_LIGHT_SHADOWS;
@@ -69,10 +74,12 @@ int main(void) {
     static const char *const techniques[] = {"PCSS", "REFERENCE"};
     for (int i = 0; i < 2; i++)
         for (uint32_t samples = 1; samples <= 3; samples += 2) {
-            crops("lantern", TEST_LIGHT_RECTANGLE, techniques[i], samples);
-            crops("stairs", TEST_LIGHT_SUN, techniques[i], samples);
-            crops("slats", TEST_LIGHT_POINT, techniques[i], samples);
-            crops("discs", TEST_LIGHT_ELLIPSE, techniques[i], samples);
+            crops("lantern", TEST_LIGHT_RECTANGLE, techniques[i], samples, NULL);
+            crops("stairs", TEST_LIGHT_SUN, techniques[i], samples, NULL);
+            crops("slats", TEST_LIGHT_POINT, techniques[i], samples, NULL);
+            crops("discs", TEST_LIGHT_ELLIPSE, techniques[i], samples, NULL);
         }
+    /* Which interpolates from pixels beside the crop. */
+    crops("lantern", TEST_LIGHT_RECTANGLE, "MULTILAYER", 3, "subsampling");
     return quality_close();
 }

@@ -226,7 +226,9 @@ static double total_opacity(const struct lists *lists) {
 
 /* ---- Tests ---- */
 
-static bool make_lists(struct bench *bench, const struct stage *stage, bool back_faces,
+static const struct fragment_choice all_casters = {.casters = CASTERS_ALL};
+
+static bool make_lists(struct bench *bench, const struct stage *stage, const struct fragment_choice *choice,
                        const struct fragment_filter *filter, struct fragment_lists *lists) {
     const pnb_scene from = {.struct_size = sizeof from,
                             .instance_count = stage->count,
@@ -245,8 +247,7 @@ static bool make_lists(struct bench *bench, const struct stage *stage, bool back
     CHECK_RESULT(gpu_scene_update(bench->renderer->scene, &bench->frame), PNB_OK);
     CHECK_RESULT(pass_shadow_map(&bench->frame, &views, SIDE, TRANSLUCENCY_ANY, &map), PNB_OK);
     bool good =
-        CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, CASTERS_ALL, back_faces, 0, &map, "test", lists),
-                     PNB_OK) &&
+        CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, choice, &map, "test", lists), PNB_OK) &&
         CHECK_RESULT(pass_fragment_filter(&bench->frame, &views, filter, SIDE, "test", lists), PNB_OK);
     gl_texture_free(&bench->backend.gl, &map);
     memory_free(bench->frame.casters);
@@ -279,7 +280,7 @@ static void levels_match(struct bench *bench, int stack_side, int mode) {
         .level_count = 6, .stack_side = stack_side, .accumulation = mode, .merge_distance = 2, .light_size = 1e-3f};
     struct lists below, expected, found;
     base_lists(&stage, &below);
-    if (make_lists(bench, &stage, false, &filter, &lists)) {
+    if (make_lists(bench, &stage, &all_casters, &filter, &lists)) {
         read_level(&bench->backend.gl, &lists, 0, &found);
         CHECK_INT(differences(&below, &found), 0);
         free(found.texels);
@@ -309,7 +310,7 @@ static void one_texel(struct bench *bench, int stack_side) {
     add_sheet(&stage, (struct sheet){24, 40, 25, 41, 4, 1});
     const struct fragment_filter filter = {
         .level_count = 7, .stack_side = stack_side, .accumulation = 1, .merge_distance = 2, .light_size = 1e-3f};
-    if (!make_lists(bench, &stage, false, &filter, &lists))
+    if (!make_lists(bench, &stage, &all_casters, &filter, &lists))
         return;
     for (uint32_t i = 0; i < lists.level_count; i++) {
         const struct fragment_level *level = &lists.levels[i];
@@ -354,7 +355,7 @@ static void opacity_is_conserved(struct bench *bench, int mode) {
                   (struct sheet){i, 2 * (i % 7), i + 1, SIDE - i, 2 + 0.1f * (float)i, 0.5f + 0.01f * (float)i});
     const struct fragment_filter filter = {
         .level_count = 7, .stack_side = 0, .accumulation = mode, .merge_distance = 20, .light_size = 1e-3f};
-    if (!make_lists(bench, &stage, false, &filter, &lists))
+    if (!make_lists(bench, &stage, &all_casters, &filter, &lists))
         return;
     double base = 0, worst = 0;
     for (uint32_t i = 0; i < lists.level_count; i++) {
@@ -370,6 +371,39 @@ static void opacity_is_conserved(struct bench *bench, int mode) {
     printf("accumulation %d: opacity conserved to %.2g\n", mode, worst);
     CHECK(base > 100);
     CHECK_AT_MOST(worst, 1e-5);
+    fragment_lists_free(&bench->backend.gl, &lists);
+    stage_free(&stage);
+}
+
+/* What lies within a distance of the first of several becomes one, before layers are counted. */
+static void near_depths_are_joined(struct bench *bench, int mode, uint32_t most) {
+    struct stage stage = {0};
+    struct fragment_lists lists = {0};
+    random_stage(&stage); /* sheets 0.171 apart */
+    const struct fragment_choice choice = {
+        .casters = CASTERS_ALL, .joined = 0.4f * SIDE, .accumulation = mode, .most = most};
+    const struct fragment_filter filter = {.level_count = 1, .merge_distance = 2, .light_size = 1e-3f};
+    struct lists base, joined, found;
+    base_lists(&stage, &base);
+    lists_create(&joined, SIDE, 0);
+    static const struct list empty;
+    int fewer = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        struct list *list = &joined.texels[i];
+        merge((const struct list *[4]){&base.texels[i], &empty, &empty, &empty}, 0.4f, mode, list);
+        for (int f = 0; f < list->count; f++)
+            list->fragments[f].opacity *= 4; /* of one list instead of four */
+        fewer += base.texels[i].count - list->count;
+        list->count = most > 0 && list->count > (int)most ? (int)most : list->count;
+    }
+    CHECK(fewer > SIDE);
+    if (make_lists(bench, &stage, &choice, &filter, &lists)) {
+        read_level(&bench->backend.gl, &lists, 0, &found);
+        CHECK_INT(differences(&joined, &found), 0);
+        free(found.texels);
+    }
+    free(base.texels);
+    free(joined.texels);
     fragment_lists_free(&bench->backend.gl, &lists);
     stage_free(&stage);
 }
@@ -424,7 +458,7 @@ static void front_faces_are_left_out(struct bench *bench) {
     const struct fragment_filter filter = {.level_count = 1, .merge_distance = 2, .light_size = 1e-3f};
     struct lists expected, found;
     base_lists(&stage, &expected);
-    if (make_lists(bench, &stage, true, &filter, &lists)) {
+    if (make_lists(bench, &stage, &(struct fragment_choice){.casters = CASTERS_ALL, .back_faces = true}, &filter, &lists)) {
         read_level(&bench->backend.gl, &lists, 0, &found);
         CHECK_INT(differences(&expected, &found), 0);
         free(found.texels);
@@ -442,6 +476,7 @@ int main(void) {
             levels_match(&bench, 0, mode);
             levels_match(&bench, 16, mode);
             opacity_is_conserved(&bench, mode);
+            near_depths_are_joined(&bench, mode, mode == 0 ? 2 : 0);
         }
         front_faces_are_left_out(&bench);
         one_texel(&bench, 0);

@@ -58,6 +58,21 @@ static void y_map_has_no_texels(void) {
     render_free(&truth);
 }
 
+/* Edges of shadows stay what they are, and the rest is all but linear from pixel to pixel. */
+static void every_other_pixel_suffices(void) {
+    struct render full = render_scene("slats", 0, "MULTILAYER", NULL, 0);
+    struct render half = render_scene("slats", 0, "MULTILAYER", "subsampling", 1);
+    double most = 0;
+    for (size_t p = 0; full.job && half.job && p < (size_t)full.width * full.height; p++)
+        most = fmax(most, fabs((double)full.shadow[3 * p] - (double)half.shadow[3 * p]));
+    const double difference = error_of(half, &full);
+    printf("slats, sub-sampled: off by %.4f, at most by %.4f\n", difference, most);
+    CHECK(difference > 0);            /* it does something */
+    CHECK_AT_MOST(difference, 0.003); /* 0.0017 on llvmpipe; 0.0068 if edges are interpolated, too */
+    CHECK_AT_MOST(most, 0.1);         /* what is interpolated lies between its neighbours, which differ by less */
+    render_free(&full);
+}
+
 /* test_fragment_lists checks which faces are left out; here that the parameter does it. */
 static void back_faces_are_an_option(void) {
     struct render all = render_scene("tall-box", 0, "MULTILAYER", NULL, 0);
@@ -71,6 +86,7 @@ int main(void) {
     quality_open();
     overlapping_occluders();
     y_map_has_no_texels();
+    every_other_pixel_suffices();
     back_faces_are_an_option();
     return quality_close();
 }
