@@ -14,6 +14,7 @@ struct receiver {
     vec2 slope;       // height of the receiver's tangent plane: is_blocker
     float level;
     float plane;      // what the height of a blocker must exceed
+    float bend;       // difference of the geometric and the shading normal: how far a surface meant smooth turns
     float limit;      // light-space depth a blocker must be before
     float texel_size; // larger side of a texel in q
     // Its view, out of the uniform block once and not at every tap:
@@ -56,18 +57,20 @@ mat2 emitter_axes(vec3 position, vec2 q, mat3 to_light) {
 // Bias: a blocker must be nearer than the receiver and above its tangent plane. On a plane the map's texels lie in
 // that plane exactly, because each is tested at its own centre; what must be tolerated is rounding, the error of the
 // stored normal (16 bits: 2e-4 over the kernel), and the rise of a neighbouring facet of a curved surface within a
-// texel, which grows with the slope. kernel_radius: texels. The same in search and filter.
+// texel, which grows with the slope. Where a smooth mesh is coarse its facets rise more: beside an edge, by the angle
+// between them, which is twice that of the normals. kernel_radius: texels. The same in search and filter.
 void receiver_set_bias(inout receiver r, float kernel_radius) {
     bool perspective = is_perspective();
     float scale = r.texel_size * (perspective ? r.position.z : 1.0);
     float facing = abs(perspective ? dot(r.normal, normalize(r.position)) : r.normal.z);
     float rounding = r.depth_span + abs(r.position.z);
-    r.plane = dot(r.normal, r.position) + scale * (0.15 / max(facing, 0.5) + 5e-4 * kernel_radius) + 2e-6 * rounding;
+    float rise = (0.15 + min(2.0 * r.bend, 0.5)) / max(facing, 0.5);
+    r.plane = dot(r.normal, r.position) + scale * (rise + 5e-4 * kernel_radius) + 2e-6 * rounding;
     r.limit = r.position.z - 1e-6 * rounding;
 }
 
 // A receiver of light-space position and normal, without its kernel.
-receiver receiver_on_map(vec3 position, vec3 normal, int layer) {
+receiver receiver_on_map(vec3 position, vec3 normal, float bend, int layer) {
     receiver r;
     light_view view = LIGHT_VIEW(layer);
     r.layer = layer;
@@ -81,6 +84,7 @@ receiver receiver_on_map(vec3 position, vec3 normal, int layer) {
     vec2 scale = view.rect.zw * vec2(r.map_size); // texels per unit of q
     r.center = (q - view.rect.xy) * scale;
     r.spread = vec2(0.0);
+    r.bend = bend;
     // dot(normal.xy, q) at the centre of texel t is dot(slope, t) + level.
     r.slope = normal.xy / scale;
     r.level = dot(r.slope, vec2(0.5)) + dot(normal.xy, view.rect.xy) + (is_perspective() ? normal.z : 0.0);
@@ -88,10 +92,11 @@ receiver receiver_on_map(vec3 position, vec3 normal, int layer) {
     return r;
 }
 
-receiver receiver_create(vec3 world_position, vec3 world_normal, int layer) {
+receiver receiver_create(vec3 world_position, vec3 geometric, vec3 shading, int layer) {
     light_view view = LIGHT_VIEW(layer);
     mat3 to_light = mat3(view.from_world);
-    receiver r = receiver_on_map((view.from_world * vec4(world_position, 1.0)).xyz, to_light * world_normal, layer);
+    receiver r = receiver_on_map((view.from_world * vec4(world_position, 1.0)).xyz, to_light * geometric,
+                                 length(geometric - shading), layer);
     vec2 q = is_perspective() ? r.position.xy / r.position.z : r.position.xy;
     vec2 scale = view.rect.zw * vec2(r.map_size);
     mat2 axes = emitter_axes(r.position, q, to_light);

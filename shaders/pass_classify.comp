@@ -79,7 +79,7 @@ receiver tile_receiver(tile t, region bounds, int layer) {
     mat3 to_light = mat3(view.from_world);
     vec2 middle = 0.5 * (bounds.minimum.xy + bounds.maximum.xy);
     receiver r = receiver_on_map(vec3(middle * (is_perspective() ? bounds.maximum.z : 1.0), bounds.maximum.z),
-                                 to_light * t.normal.xyz, layer);
+                                 to_light * t.normal.xyz, 0.0, layer);
     vec2 scale = view.rect.zw * vec2(r.map_size);
     mat2 axes = widest_axes(max(abs(bounds.minimum.xy), abs(bounds.maximum.xy)), to_light);
     r.kernel = mat2(axes[0] * scale, axes[1] * scale);
@@ -113,7 +113,7 @@ float classify_tile(tile t, region bounds, int layer) {
         return 0.5;
     // The least and the greatest bias that receiver_set_bias can have added.
     plane.x += 0.15 * texel.x - max(doubt - 5e-4, 0.0) * radius - rounding;
-    plane.y += 1.2 * (0.3 * texel.y + (doubt + 5e-4) * radius) + rounding;
+    plane.y += 1.2 * (1.3 * texel.y + (doubt + 5e-4) * radius) + rounding;
     return classify_region(r, extent, plane, vec2(far, near - rounding));
 }
 

@@ -65,8 +65,8 @@ void main() {
     if (depth == 0.0)
         return;
     vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
-    vec3 position = camera_position(coordinate, depth);
-    float weight = sample_weight(position, octahedral_decode(normals.xy));
+    vec3 position = camera_position(coordinate, depth), shading = octahedral_decode(normals.xy);
+    float weight = sample_weight(position, shading);
     if (weight <= 0.0)
         return;
     if (uniform_weights == 1)
@@ -82,6 +82,6 @@ void main() {
         out_visibility.rgb = vec3(0.0);
         return;
     }
-    receiver r = receiver_create(position, geometric, layer);
+    receiver r = receiver_create(position, geometric, shading, layer);
     out_visibility.rgb *= transmitted_bilinear(r, r.center);
 }

@@ -26,15 +26,15 @@ void main() {
     if (depth == 0.0)
         return;
     vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
-    vec3 geometric = octahedral_decode(normals.zw);
+    vec3 geometric = octahedral_decode(normals.zw), shading = octahedral_decode(normals.xy);
     vec3 position = lit_position(camera_position(coordinate, depth), geometric);
-    if (!light_reaches(position, octahedral_decode(normals.xy)))
+    if (!light_reaches(position, shading))
         return;
     out_visibility = vec4(1.0);
     int layer = light_layer(position);
     if (layer < 0 || light.casts_shadow == 0.0 || depth < 0.0)
         return;
     // Light wholly behind the surface itself lights nothing, whatever the shading normal says.
-    receiver r = receiver_create(position, geometric, layer);
+    receiver r = receiver_create(position, geometric, shading, layer);
     out_visibility.rgb = light_reaches(position, geometric) ? technique_visibility(r) : vec3(0.0);
 }

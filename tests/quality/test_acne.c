@@ -3,6 +3,7 @@
  * library's table at its default settings, and every kind of light. */
 #include "oracle.h"
 #include "quality.h"
+#include "scenes/shapes.h"
 
 /* A pixel that sees the whole light counts as acne when it is darker than this ... */
 #define DARK 0.99f
@@ -144,10 +145,48 @@ static void spheres(void) {
     }
 }
 
+/* ---- Bowl ---- */
+
+static void bowl_point(float u, float v, float position[3]) {
+    position[0] = 4 * u - 2;
+    position[1] = 4 * v - 2;
+    position[2] = 0.2f * (position[0] * position[0] + position[1] * position[1]);
+}
+
+/* A coarse smooth mesh that light falls into: every facet's neighbours rise above it, by 15 degrees, and no facet hides
+ * the light, which stands above the rim for all of them. PCF and ESM darken whatever rises within their kernels, which
+ * are as wide for a near blocker as for a far one. */
+static void bowl(void) {
+    struct shape shape = {0};
+    shape_surface(&shape, 6, 6, bowl_point);
+    pnb_mesh *mesh = shape_finish(&shape, "bowl");
+    for (int light = 0; light < TEST_LIGHT_COUNT; light++) {
+        struct test_scene *test = quality_scene("plane", (enum test_light)light, 0, 15);
+        pnb_scene scene = *test_scene_get(test);
+        pnb_instance instance = scene.instances[0];
+        instance.mesh = mesh;
+        scene.instances = &instance;
+        for (uint32_t t = 0; t < pnb_technique_count(); t++) {
+            if (strcmp(technique_name(t), "PCF") == 0 || strcmp(technique_name(t), "ESM") == 0)
+                continue;
+            pnb_settings settings = technique_settings(NULL, 320, 320);
+            settings.shadow_map_size = 256;
+            const struct acne acne = plane_acne(technique_name(t), &scene, &settings);
+            printf("%-9s bowl under %-9s %.3f %% of %llu pixels, darkest %.3f\n", technique_name(t),
+                   test_light_names[light], acne_percent(&acne), (unsigned long long)acne.pixels, (double)acne.darkest);
+            CHECK(acne.pixels > 10000);
+            CHECK_AT_MOST(acne_percent(&acne), ALLOWED);
+        }
+        test_scene_destroy(&test);
+    }
+    pnb_mesh_destroy(&mesh);
+}
+
 int main(void) {
     quality_open();
     planes();
     wide_plane();
+    bowl();
     spheres();
     return quality_close();
 }
