@@ -17,8 +17,9 @@ void square_to_disk(float point[2]) {
     point[1] = radius * sinf(angle);
 }
 
-static float wrap(float x) {
-    return x - floorf(x);
+/* To [-1, 1), about 0. In double: of thousands of points, some are closer than what floats tell apart here. */
+static float wrap(double x) {
+    return (float)(2.0 * (x + 0.5 - floor(x + 0.5)) - 1.0);
 }
 
 /* Two opposite arms of Vogel's spiral (a bijugate pattern): consecutive points are opposite, so that the centroid of
@@ -34,15 +35,14 @@ static void disk_point(int i, int count, float turn, float point[2]) {
 
 /* A disk: Vogel's spiral. A square: the golden-ratio lattice, whose projections on both axes are even, so that straight
  * edges get as many steps as there are points; it is symmetric about the centre. */
-static void vogel_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
-    const float t = (float)turn;
+void pattern_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
     if (disk) {
-        disk_point(i, count, t, point);
+        disk_point(i, count, (float)turn, point);
         return;
     }
-    const float n = (float)count, from_middle = (float)i + 0.5f - 0.5f * n;
-    point[0] = 2.0f * wrap((from_middle + 0.61803399f * t) / n + 0.5f) - 1.0f;
-    point[1] = 2.0f * wrap(from_middle * 0.61803399f + 0.7548777f * t + 0.5f) - 1.0f;
+    const double n = count, t = turn, from_middle = i + 0.5 - 0.5 * n;
+    point[0] = wrap((from_middle + 0.618033988749895 * t) / n);
+    point[1] = wrap(from_middle * 0.618033988749895 + 0.754877666246693 * t);
 }
 
 static void grid_point(int i, int side, bool disk, float point[2]) {
@@ -60,25 +60,17 @@ int pattern_fill(enum pattern pattern, int count, bool disk, uint32_t turn, floa
         if (pattern == PATTERN_GRID)
             grid_point(i, side, disk, points[i]);
         else
-            vogel_point(i, count, disk, turn, points[i]);
+            pattern_point(i, count, disk, turn, points[i]);
     }
     if (count % 2 == 1)
         points[count][0] = points[count][1] = 1e30f;
     return count;
 }
 
-void cell_point(int i, int j, int n, bool disk, float point[2]) {
-    const float side = (float)n;
-    point[0] = 2.0f * ((float)i + ((float)j + 0.5f) / side) / side - 1.0f;
-    point[1] = 2.0f * ((float)j + ((float)i + 0.5f) / side) / side - 1.0f;
-    if (disk)
-        square_to_disk(point);
-}
-
-void sphere_point(int i, int count, float point[3]) {
+void sphere_point(int i, int count, uint32_t turn, float point[3]) {
     const float z = 1.0f - (2.0f * (float)i + 1.0f) / (float)count, across = sqrtf(1.0f - z * z);
     /* In double: with thousands of points the angle is large. */
-    const float angle = (float)fmod((double)i * 2.399963229728653, 2.0 * 3.141592653589793);
+    const float angle = (float)fmod(i * 2.399963229728653 + turn * 1.941611038725466, 2.0 * 3.141592653589793);
     point[0] = across * cosf(angle);
     point[1] = across * sinf(angle);
     point[2] = z;
@@ -127,7 +119,7 @@ void pixel_sample(uint32_t index, uint32_t count, float filter_width, float offs
     if (count <= 1)
         return;
     float point[2];
-    vogel_point((int)spread(index, count), (int)count, false, 0, point);
+    pattern_point((int)spread(index, count), (int)count, false, 0, point);
     /* A Blackman-Harris filter of width w is the window over [-w, w] (Cycles' convention). */
     for (int axis = 0; axis < 2; axis++)
         offset[axis] = filter_inverse(0.5f * point[axis] + 0.5f) * 2.0f * filter_width;

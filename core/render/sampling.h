@@ -22,13 +22,14 @@ enum pattern { PATTERN_VOGEL, PATTERN_GRID };
  * each other. Returns the number of points; the one after an odd number is set far away. */
 int pattern_fill(enum pattern pattern, int count, bool disk, uint32_t turn, float points[][2]);
 
-/* Point (i, j) of n x n points of the square or disk, one to a cell, no two in the same row or column, so that edges
- * along the axes get n * n steps (Kensler 2013, correlated multi-jitter without the jitter). */
-void cell_point(int i, int j, int n, bool disk, float point[2]);
+/* Point i of the VOGEL pattern of `count` points, of any number: what lies on one side of a line of any direction is off
+ * its share by about 0.27 / count^(3/4), where a grid's cells, shifted so that none share a row or column, are off by
+ * 0.45 / count^(3/4). */
+void pattern_point(int i, int count, bool disk, uint32_t turn, float point[2]);
 
 /* Point i of `count` points of the unit sphere, evenly dense: Vogel's spiral on a sphere (a Fibonacci lattice). Any
- * hemisphere has its centroid where it should be, which cannot be said of a grid. */
-void sphere_point(int i, int count, float point[3]);
+ * hemisphere has its centroid where it should be, which cannot be said of a grid. turn: see pattern_fill. */
+void sphere_point(int i, int count, uint32_t turn, float point[3]);
 
 /* Area-preserving map of [-1, 1]^2 to the unit disk (Shirley and Chiu 1997). */
 void square_to_disk(float point[2]);

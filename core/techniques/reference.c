@@ -22,20 +22,21 @@ static const struct parameter parameters[] = {
                  .items = weightings},
     {0}};
 
-/* A point-like emitter at one point of `emitter`, and the direction its surface faces there (w = 0: all). */
-static void emitter_at(const struct emitter *emitter, int i, int j, int n, struct emitter *point, vec4 normal) {
+/* A point-like emitter at point i of `count` points of `emitter`, and the direction its surface faces there (w = 0: all). */
+static void emitter_at(const struct emitter *emitter, int i, int count, uint32_t turn, struct emitter *point,
+                       vec4 normal) {
     float s[2];
     *point = *emitter;
     glm_vec4_zero(normal);
     if (emitter->type == PNB_LIGHT_AREA) {
-        cell_point(i, j, n, emitter->ellipse, s);
+        pattern_point(i, count, emitter->ellipse, turn, s);
         glm_vec3_muladds((float *)emitter->half_u, s[0], point->position);
         glm_vec3_muladds((float *)emitter->half_v, s[1], point->position);
         glm_vec3_zero(point->half_u);
         glm_vec3_zero(point->half_v);
         glm_vec4((float *)emitter->frame[2], 1.0f, normal);
     } else if (emitter->type == PNB_LIGHT_SUN) {
-        cell_point(i, j, n, true, s);
+        pattern_point(i, count, true, turn, s);
         vec3 *frame = point->frame;
         glm_vec3_muladds((float *)emitter->frame[0], s[0] * emitter->tan_half_angle, frame[2]);
         glm_vec3_muladds((float *)emitter->frame[1], s[1] * emitter->tan_half_angle, frame[2]);
@@ -46,7 +47,7 @@ static void emitter_at(const struct emitter *emitter, int i, int j, int n, struc
     } else if (emitter->radius > 0.0f) {
         /* A sphere; each receiver counts the side it sees. */
         vec3 direction;
-        sphere_point(j * n + i, n * n, direction);
+        sphere_point(i, count, turn, direction);
         glm_vec3_muladds((float *)direction, emitter->radius, point->position);
         point->radius = 0.0f;
         point->cone_offset = emitter->radius;
@@ -93,12 +94,12 @@ static pnb_result add_sample(struct frame *frame, const struct frame_light *ligh
     return gl_check(gl, "reference visibility");
 }
 
-static pnb_result draw_sample(struct frame *frame, const struct frame_light *light, int i, int j, int n,
+static pnb_result draw_sample(struct frame *frame, const struct frame_light *light, int i, int count,
                               struct sample_maps *maps) {
     struct emitter point;
     struct light_views views;
     vec4 normal;
-    emitter_at(&light->emitter, i, j, n, &point, normal);
+    emitter_at(&light->emitter, i, count, frame->sample, &point, normal);
     light_views_fit(&views, &point, frame->coarse_receivers, frame->coarse_receiver_count, frame->casters,
                     frame->caster_count, light->map_size);
     pnb_result result = PNB_OK;
@@ -124,9 +125,9 @@ static pnb_result reference_draw(struct frame *frame, const struct frame_light *
         return result;
     gl->ClearBufferfv(GL_COLOR, 0, zero);
     struct sample_maps maps = {0};
-    const int n = (int)frame->settings->light_samples;
-    for (int i = 0; i < n * n && result == PNB_OK; i++) {
-        result = draw_sample(frame, light, i % n, i / n, n, &maps);
+    const int side = (int)frame->settings->light_samples, count = side * side;
+    for (int i = 0; i < count && result == PNB_OK; i++) {
+        result = draw_sample(frame, light, i, count, &maps);
         if (result == PNB_OK && i % 8 == 7) {
             gl->Finish();
             if (job_is_cancelled(frame->job))

@@ -107,22 +107,39 @@ static void turns_complete_each_other(void) {
     }
 }
 
-static void cells_share_no_row_or_column(void) {
-    for (int n = 1; n <= 32; n *= 2) {
-        bool columns[1024] = {0}, rows[1024] = {0};
-        int clashes = 0;
-        for (int i = 0; i < n * n; i++) {
-            float point[2];
-            cell_point(i % n, i / n, n, false, point);
-            const int column = (int)floor((0.5 + 0.5 * (double)point[0]) * n * n),
-                      row = (int)floor((0.5 + 0.5 * (double)point[1]) * n * n);
-            clashes += columns[column] + rows[row];
-            columns[column] = rows[row] = true;
-            /* Each in its own cell. */
-            clashes += column / n != i % n || row / n != i / n;
+/* Share of the square where x cos + y sin < t: a point of it is the sum of two even distributions. */
+static double square_beside(double t, double x, double y) {
+    const double a = fmax(fabs(x), fabs(y)), b = fmin(fabs(x), fabs(y)), side = fabs(t);
+    const double beyond = side >= a + b   ? 0
+                          : side <= a - b ? 0.5 - side / (2 * a)
+                                          : (a + b - side) * (a + b - side) / (8 * a * b);
+    return t < 0 ? beyond : 1 - beyond;
+}
+
+/* Edges of shadows run in all directions over a light. Root mean square over lines; random points: 0.4 / sqrt(count). */
+static void lines_of_any_direction_get_their_share(void) {
+    enum { DIRECTIONS = 40, LINES = 50 };
+    for (int side = 4; side <= 64; side *= 2)
+        for (int disk = 0; disk < 2; disk++) {
+            const int count = side * side;
+            double error = 0;
+            for (int k = 0; k < DIRECTIONS * LINES; k++) {
+                const double angle = PI * (k % DIRECTIONS + 0.5) / DIRECTIONS, x = cos(angle), y = sin(angle);
+                const double line = (2 * (k / DIRECTIONS + 0.5) / LINES - 1) * (disk ? 1 : fabs(x) + fabs(y));
+                int beside = 0;
+                for (int i = 0; i < count; i++) {
+                    float point[2];
+                    pattern_point(i, count, disk, 0, point);
+                    beside += x * (double)point[0] + y * (double)point[1] < line;
+                }
+                const double area = disk ? area_left_of(line, true) : square_beside(line, x, y);
+                error += pow((double)beside / count - area, 2) / (DIRECTIONS * LINES);
+            }
+            printf("%s %4d points: share beside a line within %.5f, %.3f / count^(3/4)\n", disk ? "disk  " : "square",
+                   count, sqrt(error), sqrt(error) * pow(count, 0.75));
+            /* As even as points can be (Beck 1987: count^(-3/4)); a shifted grid has 0.45 with 64, 0.8 with 1024. */
+            CHECK_AT_MOST(sqrt(error), 0.32 / pow(count, 0.75));
         }
-        CHECK_INT(clashes, 0);
-    }
 }
 
 /* Area-preserving: a ring or a sector holds its share of a fine grid. */
@@ -151,10 +168,10 @@ static void spheres_are_even(void) {
         double worst = 0, length = 0;
         for (int k = 0; k < 64; k++) {
             float eye[3], point[3];
-            sphere_point(k, 64, eye);
+            sphere_point(k, 64, 0, eye);
             double sum[3] = {0}, weights = 0;
             for (int i = 0; i < n * n; i++) {
-                sphere_point(i, n * n, point);
+                sphere_point(i, n * n, 0, point);
                 double facing = 0, norm = 0;
                 for (int c = 0; c < 3; c++) {
                     facing += (double)point[c] * (double)eye[c];
@@ -237,7 +254,7 @@ int main(void) {
     patterns_are_even();
     pairs_are_opposite();
     turns_complete_each_other();
-    cells_share_no_row_or_column();
+    lines_of_any_direction_get_their_share();
     disk_map_preserves_area();
     spheres_are_even();
     pixel_samples_follow_the_filter();
