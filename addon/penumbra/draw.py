@@ -28,17 +28,32 @@ def draw_picture(texture, x, y, width, height):
 
 # ---- The Shadow pass: over what another engine drew, or by itself ----
 
-# Multiplied with what lies below; as it is; lit, penumbra and umbra by colours.
-MULTIPLY, SHOW, CLASSIFY = range(3)
+# Multiplied with what lies below; as it is; lit, penumbra and umbra by colours; one channel from dark to bright; a map.
+MULTIPLY, SHOW, CLASSIFY, RAMP, MAP = range(5)
 
 _shadow_shader = None
 _SHADOW_VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
 # Premultiplied black of some alpha is a multiplication of what lies below.
 _SHADOW_FRAGMENT = """
+vec3 ramp(float value) {
+    const vec3 colors[5] = vec3[5](vec3(0.03, 0.0, 0.09), vec3(0.04, 0.1, 0.26), vec3(0.01, 0.28, 0.26),
+                                   vec3(0.1, 0.55, 0.12), vec3(0.98, 0.8, 0.02));
+    float place = clamp(value, 0.0, 1.0) * 3.999;
+    return mix(colors[int(place)], colors[int(place) + 1], fract(place));
+}
+
 void main() {
     ivec2 pixel = ivec2(floor((gl_FragCoord.xy - place.xy) / place.zw * vec2(size)));
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size)))
         discard;
+    if (mode >= 3) {
+        float value = texelFetch(shadow, pixel, 0).r;
+        if (mode == 3)
+            result = vec4(value > 0.0 ? ramp(value / color.r) : vec3(0.0), 1.0);
+        else
+            result = vec4(value < 0.0 ? vec3(0.02, 0.02, 0.05) : vec3(value), 1.0);
+        return;
+    }
     vec3 light;
     for (int channel = 0; channel < 3; channel++)
         light[channel] = texelFetch(shadow, ivec2(3 * pixel.x + channel, pixel.y), 0).r;
@@ -56,13 +71,14 @@ void main() {
 """
 
 
-def make_shadow_texture(width, height, pixels):
-    """Texture of RGB floats: three texels of one channel per pixel, since there is no texture of three."""
-    return gpu.types.GPUTexture((3 * width, height), format='R32F', data=gpu.types.Buffer('FLOAT', len(pixels), pixels))
+def make_shadow_texture(width, height, pixels, channels=3):
+    """Texture of RGB floats: three texels of one channel per pixel, since there is no texture of three. Or of one."""
+    return gpu.types.GPUTexture((channels * width, height), format='R32F', data=gpu.types.Buffer('FLOAT', len(pixels), pixels))
 
 
 def draw_shadow(texture, size, place, mode, color=(0.0, 0.0, 0.0, 1.0)):
-    """`size`: of the picture; `place`: x, y, width, height in the region; `color`: RGB and strength of MULTIPLY."""
+    """`size`: of the picture; `place`: x, y, width, height in the region; `color`: RGB and strength of MULTIPLY; its
+    red is the largest value of RAMP."""
     shader = _get_shadow_shader()
     batch = batch_for_shader(shader, 'TRIS', {'position': ((-1.0, -1.0), (3.0, -1.0), (-1.0, 3.0))})
     gpu.state.blend_set('ALPHA_PREMULT')

@@ -5,6 +5,9 @@ from ctypes import byref, c_float, c_uint32, c_void_p
 
 from . import capi
 
+# Of an image of each pass that a viewport shows.
+_CHANNELS = {capi.PASS_COMBINED: 4, capi.PASS_SHADOW: 3, capi.PASS_LIGHT_SHADOWS: 3, capi.PASS_BLOCKERS: 1,
+             capi.PASS_PENUMBRAE: 1, capi.PASS_SHADOW_MAPS: 1}
 # Cancelled jobs that have not ended yet: destroying one waits for it.
 _ending = []
 
@@ -16,7 +19,7 @@ class Job:
         self._handle = c_void_p()
         self.samples = settings.samples
         self.width, self.height = settings.crop[2:]
-        self.channels = 4 if settings.passes == capi.PASS_COMBINED else 3
+        self.channels = _CHANNELS[settings.passes]
         capi.library().render_start(context, byref(scene), byref(settings), byref(self._handle))
 
     def samples_done(self):

@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, draw, geometry, viewport
+from . import capi, draw, geometry, pictures, viewport
 
 _regions = {}           # address of a region: its ShadowViewport
 _handler = None
@@ -29,7 +29,7 @@ class RegionHost:
         """Overlays have no place for one."""
 
 
-class OverlayPicture(viewport.ShadowPicture):
+class OverlayPicture(pictures.ShadowPicture):
     def draw(self, region):
         options = bpy.context.scene.penumbra
         draw.draw_shadow(self.texture, self.size, self.place(region), draw.MULTIPLY,
@@ -56,7 +56,7 @@ class ShadowViewport(viewport.Viewport):
         return changed
 
     def image_wanted(self, scene):
-        return viewport.ImageWanted(capi.PASS_SHADOW, 0, OverlayPicture)
+        return pictures.ImageWanted(capi.PASS_SHADOW, 0, OverlayPicture)
 
 
 def _all_regions():

@@ -103,7 +103,7 @@ class PENUMBRA_PT_debug(_EnginePanel, Panel):
         settings = context.scene.penumbra
         column = self._column()
         column.prop(settings, 'viewport_view')
-        if settings.viewport_view == 'LIGHT':
+        if settings.viewport_view in {'LIGHT', 'PENUMBRA', 'BLOCKER', 'MAP'}:
             column.prop_search(settings, 'viewport_light', context.scene, 'objects', icon='LIGHT')
 
 

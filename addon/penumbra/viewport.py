@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import capi, command_line, device, draw, export, geometry, jobs, settings, statistics, view
+from . import capi, command_line, device, draw, export, geometry, jobs, pictures, settings, statistics, view
 
 # Seconds between two looks at the library's thread.
 _POLL = 0.005
@@ -189,16 +189,7 @@ class Viewport:
             self._finish(run)
 
     def image_wanted(self, scene):
-        """By the debug view."""
-        view_name = scene.penumbra.viewport_view
-        if view_name == 'FINAL':
-            return ImageWanted(capi.PASS_COMBINED, 0, Picture)
-        if view_name != 'LIGHT':
-            return ImageWanted(capi.PASS_SHADOW, 0, ShadowPicture if view_name == 'SHADOW' else ClassesPicture)
-        names = [light.name.decode() for light in self._exported.scene.lights[:self._exported.scene.light_count]]
-        if scene.penumbra.viewport_light not in names:
-            return ImageWanted(capi.PASS_SHADOW, 0, ShadowPicture)
-        return ImageWanted(capi.PASS_LIGHT_SHADOWS, names.index(scene.penumbra.viewport_light), ShadowPicture)
+        return pictures.wanted(scene.penumbra, self._exported.scene)
 
     def _finish(self, run):
         run.record_statistics()
@@ -236,18 +227,12 @@ class Viewport:
                                self._picture.label if self._picture else "Preparing")
 
 
-class ImageWanted(NamedTuple):
-    image_pass: int         # of the library
-    index: int              # among the images of that pass
-    picture: type           # what draws it
-
-
 class Wanted(NamedTuple):
     """Everything a picture depends on, compared by value."""
     version: int            # of the exported scene
     view: view.View
     key: tuple              # of the settings
-    image: ImageWanted
+    image: pictures.ImageWanted
     pixel_scale: float
 
 
@@ -261,10 +246,12 @@ class Run:
         self.scale = wanted.pixel_scale * self.share
         self.samples_taken = 0
         self._seen = 0
-        self._options = options.technique, options.use_refine, options.viewport_samples
+        is_single = bool(wanted.image.title)
+        samples = 1 if is_single else options.viewport_samples
+        self._options = options.technique, options.use_refine and not is_single, samples
         width, height = (max(1, int(size * self.scale + 0.5)) for size in wanted.view[:2])
         values = settings.for_viewport(scene, width, height, view.crop(wanted.view, width, height),
-                                       1 if kind == _FIRST else options.viewport_samples, kind == _REFERENCE,
+                                       1 if kind == _FIRST else samples, kind == _REFERENCE,
                                        wanted.image.image_pass)
         self.technique = values.technique.decode()
         self.size = width, height
@@ -299,47 +286,6 @@ class Run:
         if self.kind != _REFERENCE and refine and technique != 'REFERENCE':
             return _REFERENCE
         return None
-
-
-class Picture:
-    """The newest picture of a run."""
-
-    def __init__(self, run):
-        pixels, run.samples_taken = run.job.picture(run.wanted.image.index)
-        self.texture = self.make_texture(run.job, pixels)
-        self.size = run.job.width, run.job.height
-        self._crop, self._size = run.crop, run.size
-        parts = [run.technique, f"sample {run.samples_taken} of {run.job.samples}"]
-        if run.scale < 1.0:
-            parts.append(f"{run.scale:.0%} resolution")
-        self.label = ", ".join(parts)
-
-    def make_texture(self, job, pixels):
-        return draw.make_texture(job.width, job.height, pixels)
-
-    def place(self, region):
-        """x, y, width, height in pixels of the region."""
-        x, y = region.width / self._size[0], region.height / self._size[1]
-        return self._crop[0] * x, self._crop[1] * y, self._crop[2] * x, self._crop[3] * y
-
-    def draw(self, region):
-        draw.draw_picture(self.texture, *self.place(region))
-
-
-class ShadowPicture(Picture):
-    """The Shadow pass, or that of a light."""
-    mode = draw.SHOW
-
-    def make_texture(self, job, pixels):
-        return draw.make_shadow_texture(job.width, job.height, pixels)
-
-    def draw(self, region):
-        draw.draw_shadow(self.texture, self.size, self.place(region), self.mode)
-
-
-class ClassesPicture(ShadowPicture):
-    """Lit, penumbra and umbra."""
-    mode = draw.CLASSIFY
 
 
 class Speed:

@@ -364,7 +364,14 @@ enum pnb_pass {
     PNB_PASS_DEPTH = 2,        /* "Depth", 1 channel, metres along the camera axis; 1e10 where there is nothing */
     PNB_PASS_NORMAL = 4,       /* "Normal", 3 channels, world space; 0 where there is nothing */
     PNB_PASS_SHADOW = 8,       /* "Shadow", RGB, shadowed over unshadowed irradiance; 1 where no light reaches */
-    PNB_PASS_LIGHT_SHADOWS = 16 /* "Shadow.<light name>", RGB visibility of each light, in light order */
+    PNB_PASS_LIGHT_SHADOWS = 16, /* "Shadow.<light name>", RGB visibility of each light, in light order */
+    /* To look at how shadows come about, 1 channel for each light, of the first sample. They cost a dense search of the
+     * shadow map, are the same whatever the technique, and are 0 where nothing blocks: */
+    PNB_PASS_BLOCKERS = 32,     /* "Blocker.<light name>", metres from the light to the average blocker; of a SUN, from
+                                 * the near end of its shadow map */
+    PNB_PASS_PENUMBRAE = 64,    /* "Penumbra.<light name>", metres across the light's direction at the receiver */
+    PNB_PASS_SHADOW_MAPS = 128  /* "Map.<light name>", the map itself, its layers side by side in the full image: 0 at its
+                                 * near end, 1 at its far end or where there is nothing, -1 beside it */
 };
 
 enum pnb_settings_flags {

@@ -181,6 +181,11 @@ const struct gl_texture *if_made(const struct gl_texture *texture);
  * group of lights what needs no light: background, ambient light, emission and normal. */
 pnb_result pass_prepare_sums(struct frame *frame);
 pnb_result pass_shading(struct frame *frame, bool first);
+/* diagnosis.c: whether passes to look at how shadows come about are wanted; those that search for blockers. */
+bool wants_diagnosis(const struct frame *frame);
+bool wants_blockers(const struct frame *frame);
+/* G-buffer, shadow_map, min_max -> the job's images of one light. */
+pnb_result pass_diagnosis(struct frame *frame, const struct frame_light *light);
 /* resolve.c: makes the job's images; fills what is wanted of the first sample alone (depth); sums -> images. */
 pnb_result pass_create_images(struct frame *frame);
 pnb_result pass_resolve_first_sample(struct frame *frame);

@@ -14,23 +14,22 @@ static const struct image_kind {
     uint32_t pass;
     const char *name;
     uint32_t channels;
-} kinds[] = {{PNB_PASS_COMBINED, "Combined", 4},
-             {PNB_PASS_DEPTH, "Depth", 1},
-             {PNB_PASS_NORMAL, "Normal", 3},
-             {PNB_PASS_SHADOW, "Shadow", 3},
-             {PNB_PASS_LIGHT_SHADOWS, "Shadow.", 3}};
+} kinds[] = {{PNB_PASS_COMBINED, "Combined", 4},     {PNB_PASS_DEPTH, "Depth", 1},
+             {PNB_PASS_NORMAL, "Normal", 3},         {PNB_PASS_SHADOW, "Shadow", 3},
+             {PNB_PASS_LIGHT_SHADOWS, "Shadow.", 3}, {PNB_PASS_BLOCKERS, "Blocker.", 1},
+             {PNB_PASS_PENUMBRAE, "Penumbra.", 1},   {PNB_PASS_SHADOW_MAPS, "Map.", 1}};
 
 pnb_result pass_create_images(struct frame *frame) {
     for (int i = 0; i < IMAGE_KINDS; i++) {
         if (!(frame->settings->passes & kinds[i].pass))
             continue;
-        const uint32_t count = i == IMAGE_LIGHT_SHADOWS ? frame->scene->light_count : 1;
+        const uint32_t count = i >= IMAGE_LIGHT_SHADOWS ? frame->scene->light_count : 1;
         for (uint32_t k = 0; k < count; k++) {
             char name[256];
             snprintf(name, sizeof name, "%s%s", kinds[i].name,
-                     i == IMAGE_LIGHT_SHADOWS ? frame->scene->lights[k].name : "");
-            frame->images[i + (int)k] = job_add_image(frame->job, name, kinds[i].channels);
-            if (!frame->images[i + (int)k])
+                     i >= IMAGE_LIGHT_SHADOWS ? frame->scene->lights[k].name : "");
+            frame->images[i][k] = job_add_image(frame->job, name, kinds[i].channels);
+            if (!frame->images[i][k])
                 return PNB_ERROR_OUT_OF_MEMORY;
         }
     }
@@ -138,11 +137,11 @@ static pnb_result resolve_rows(struct frame *frame, const struct recipe *recipe,
     return result;
 }
 
-static pnb_result resolve_image(struct frame *frame, int index, const struct recipe *recipe) {
-    float *pixels = frame->images[index];
+static pnb_result resolve_image(struct frame *frame, int kind, uint32_t light, const struct recipe *recipe) {
+    float *pixels = frame->images[kind][light];
     if (!pixels)
         return PNB_OK;
-    const size_t channels = kinds[index < IMAGE_LIGHT_SHADOWS ? index : IMAGE_LIGHT_SHADOWS].channels;
+    const size_t channels = kinds[kind].channels;
     const size_t band = (size_t)frame->width * BAND_ROWS * 4 * 3;
     float *scratch = memory_array(band, sizeof *scratch);
     if (!scratch)
@@ -164,7 +163,7 @@ static pnb_result resolve_image(struct frame *frame, int index, const struct rec
 
 /* Depth is not averaged over the samples: the mean of two surfaces is the depth of neither. */
 pnb_result pass_resolve_first_sample(struct frame *frame) {
-    return resolve_image(frame, IMAGE_DEPTH, &(struct recipe){{&frame->renderer->gbuffer_depth}, finish_depth});
+    return resolve_image(frame, IMAGE_DEPTH, 0, &(struct recipe){{&frame->renderer->gbuffer_depth}, finish_depth});
 }
 
 pnb_result pass_resolve(struct frame *frame) {
@@ -175,13 +174,13 @@ pnb_result pass_resolve(struct frame *frame) {
                         normal = {{&renderer->normal}, finish_normal},
                         shadow = {{&renderer->shadowed, &renderer->unshadowed}, finish_shadow};
     pnb_result result;
-    if ((result = resolve_image(frame, IMAGE_COMBINED, frame->scene->catches_shadows ? &with_catchers : &combined)) !=
-            PNB_OK ||
-        (result = resolve_image(frame, IMAGE_NORMAL, &normal)) != PNB_OK ||
-        (result = resolve_image(frame, IMAGE_SHADOW, &shadow)) != PNB_OK)
+    if ((result = resolve_image(frame, IMAGE_COMBINED, 0,
+                                frame->scene->catches_shadows ? &with_catchers : &combined)) != PNB_OK ||
+        (result = resolve_image(frame, IMAGE_NORMAL, 0, &normal)) != PNB_OK ||
+        (result = resolve_image(frame, IMAGE_SHADOW, 0, &shadow)) != PNB_OK)
         return result;
     for (uint32_t i = 0; i < frame->scene->light_count && result == PNB_OK; i++)
-        result = resolve_image(frame, IMAGE_LIGHT_SHADOWS + (int)i,
+        result = resolve_image(frame, IMAGE_LIGHT_SHADOWS, i,
                                &(struct recipe){{&renderer->light_shadows[i]}, finish_light_shadow});
     return result;
 }

@@ -58,8 +58,18 @@ struct frame_light {
     struct fragment_lists lists;
 };
 
-/* Images of a job; those of the lights follow one another. */
-enum { IMAGE_COMBINED, IMAGE_DEPTH, IMAGE_NORMAL, IMAGE_SHADOW, IMAGE_LIGHT_SHADOWS, IMAGE_KINDS };
+/* Images of a job; from IMAGE_LIGHT_SHADOWS on there is one for each light. */
+enum {
+    IMAGE_COMBINED,
+    IMAGE_DEPTH,
+    IMAGE_NORMAL,
+    IMAGE_SHADOW,
+    IMAGE_LIGHT_SHADOWS,
+    IMAGE_BLOCKERS,
+    IMAGE_PENUMBRAE,
+    IMAGE_SHADOW_MAPS,
+    IMAGE_KINDS
+};
 
 struct frame {
     const struct gl *gl;
@@ -82,7 +92,7 @@ struct frame {
     size_t coarse_receiver_count;
     struct box *casters; /* bounds of the instances that cast shadows */
     size_t caster_count;
-    float *images[IMAGE_LIGHT_SHADOWS + MAX_LIGHTS]; /* pixels of the job's images, NULL: not wanted */
+    float *images[IMAGE_KINDS][MAX_LIGHTS]; /* pixels of the job's images, NULL: not wanted */
 
     struct frame_light lights[MAX_LIGHTS];
 };

@@ -139,11 +139,11 @@ static enum translucency map_translucency(const struct frame *frame, const struc
 
 static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *light) {
     frame->light = (uint32_t)(light - frame->lights);
-    if (light->views.count == 0 || light->technique->draw)
+    if (light->views.count == 0 || (light->technique->draw && !wants_diagnosis(frame)))
         return PNB_OK;
     pnb_result result =
         pass_shadow_map(frame, &light->views, light->map_size, map_translucency(frame, light), &light->shadow_map);
-    if (result == PNB_OK && (light->technique->needs & NEEDS_MIN_MAX))
+    if (result == PNB_OK && ((light->technique->needs & NEEDS_MIN_MAX) || wants_blockers(frame)))
         result = pass_min_max(frame, &light->shadow_map, &light->min_max);
     if (result == PNB_OK && uses_tiles(light)) {
         light_block_upload(frame->renderer, &light->emitter, &light->views);
@@ -228,6 +228,14 @@ static pnb_result draw_sample_maps(struct frame *frame, uint32_t first, uint32_t
     return result;
 }
 
+/* Of the first sample, as depth is. */
+static pnb_result diagnose(struct frame *frame, uint32_t first, uint32_t last) {
+    pnb_result result = PNB_OK;
+    for (uint32_t i = first; i < last && result == PNB_OK && frame->sample == 0 && wants_diagnosis(frame); i++)
+        result = pass_diagnosis(frame, &frame->lights[i]);
+    return result;
+}
+
 /* The G-buffer of the sample and what follows from it alone. */
 static pnb_result begin_sample(struct frame *frame, bool drawn_already) {
     const bool key = reuse_is_key(frame);
@@ -256,6 +264,8 @@ static pnb_result draw_samples(struct frame *frame, uint32_t first, uint32_t las
             result = pass_resolve_first_sample(frame);
         if (result == PNB_OK)
             result = draw_sample_maps(frame, first, last);
+        if (result == PNB_OK)
+            result = diagnose(frame, first, last);
         for (uint32_t i = first; i < last && result == PNB_OK; i++)
             result = draw_light(frame, i, i == first);
         if (result == PNB_OK && reuse_is_key(frame))

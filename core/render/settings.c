@@ -7,6 +7,8 @@
 #include <string.h>
 
 #define DEFAULT_PASSES (PNB_PASS_COMBINED | PNB_PASS_DEPTH | PNB_PASS_NORMAL | PNB_PASS_SHADOW)
+#define KNOWN_PASSES                                                                                                   \
+    (DEFAULT_PASSES | PNB_PASS_LIGHT_SHADOWS | PNB_PASS_BLOCKERS | PNB_PASS_PENUMBRAE | PNB_PASS_SHADOW_MAPS)
 
 static uint32_t or_default(uint32_t value, uint32_t fallback) {
     return value ? value : fallback;
@@ -141,7 +143,7 @@ pnb_result settings_resolve(const pnb_settings *from, uint32_t max_texture_size,
         .passes = or_default(from->passes, DEFAULT_PASSES),
     };
     if ((result = check_bits("flags", to->flags, PNB_SETTINGS_FILM_TRANSPARENT | PNB_SETTINGS_PROGRESSIVE)) != PNB_OK ||
-        (result = check_bits("passes", to->passes, DEFAULT_PASSES | PNB_PASS_LIGHT_SHADOWS)) != PNB_OK ||
+        (result = check_bits("passes", to->passes, KNOWN_PASSES)) != PNB_OK ||
         (result = check_size("width", to->width, 1, max_texture_size)) != PNB_OK ||
         (result = check_size("height", to->height, 1, max_texture_size)) != PNB_OK ||
         (result = check_size("shadow_map_size", to->shadow_map_size, 16, max_texture_size)) != PNB_OK ||

@@ -15,13 +15,14 @@ static const char help[] =
     "Renders a capture. The ending of OUTPUT chooses the format:\n"
     "  .exr  all passes as 32-bit floats, channels named PASS.R, PASS.G, ...\n"
     "  .png  one pass, 8 bits; colours are sRGB-encoded, Normal is mapped from -1..1, Depth from\n"
-    "        far (black) to near (white)\n"
+    "        far (black) to near (white), Blocker and Penumbra from 0 to their largest\n"
     "  .pfm  one pass, 32-bit floats, 1 or 3 channels\n"
     "OUTPUT is written completely or not at all.\n\n"
     "  -o, --output FILE           what to write\n"
     "  -t, --technique ID          shadow technique of all lights; 'penumbra info' lists them\n"
-    "      --pass NAME             Combined (default), Depth, Normal, Shadow or Shadow.LIGHT;\n"
-    "                              for an .exr: write only this pass\n"
+    "      --pass NAME             Combined (default), Depth, Normal, Shadow or Shadow.LIGHT; to\n"
+    "                              look at: Blocker.LIGHT and Penumbra.LIGHT, metres, and\n"
+    "                              Map.LIGHT, the shadow map; for an .exr: only this pass\n"
     "      --exposure STOPS        PNG: brighten by so many stops\n"
     "      --repeat N              render N times, report the median time and whether all images\n"
     "                              are identical (exit status 1 if not)\n";
@@ -154,6 +155,16 @@ static enum image_encoding make_viewable(struct image *image, double exposure) {
         float span = range[1] > range[0] ? range[1] - range[0] : 1;
         for (size_t i = 0; i < floats; i++)
             image->pixels[i] = (range[1] - image->pixels[i]) / span;
+        return IMAGE_ENCODE_RAW;
+    }
+    if (strncmp(image->name, "Map.", 4) == 0)
+        return IMAGE_ENCODE_RAW;
+    if (strncmp(image->name, "Blocker.", 8) == 0 || strncmp(image->name, "Penumbra.", 9) == 0) {
+        float most = 0;
+        for (size_t i = 0; i < floats; i++)
+            most = fmaxf(most, image->pixels[i]);
+        for (size_t i = 0; i < floats && most > 0; i++)
+            image->pixels[i] /= most;
         return IMAGE_ENCODE_RAW;
     }
     if (strcmp(image->name, "Normal") == 0) {
@@ -308,7 +319,7 @@ int command_render(int count, char **arguments) {
     pnb_settings settings;
     options.replay.one_technique = options.technique;
     code = replay_open(&replay, options.capture, &options.replay);
-    if (code == EXIT_OK && passes == PNB_PASS_LIGHT_SHADOWS && !check_light(options.pass, &replay.scene))
+    if (code == EXIT_OK && passes >= PNB_PASS_LIGHT_SHADOWS && !check_light(options.pass, &replay.scene))
         code = EXIT_USAGE;
     if (code == EXIT_OK && !options.technique)
         technique = replay.technique;

@@ -61,22 +61,33 @@ bool parse_crop(const char *option, const char *text, uint32_t crop[4]) {
 }
 
 bool parse_pass(const char *option, const char *text, uint32_t *passes) {
-    static const char prefix[] = "Shadow.";
     static const struct {
         const char *name;
         uint32_t flag;
-    } names[] = {
-        {"Combined", PNB_PASS_COMBINED},
-        {"Depth", PNB_PASS_DEPTH},
-        {"Normal", PNB_PASS_NORMAL},
-        {"Shadow", PNB_PASS_SHADOW},
-    };
-    *passes = strncmp(text, prefix, sizeof prefix - 1) == 0 ? PNB_PASS_LIGHT_SHADOWS : 0;
+    } names[] =
+        {
+            {"Combined", PNB_PASS_COMBINED},
+            {"Depth", PNB_PASS_DEPTH},
+            {"Normal", PNB_PASS_NORMAL},
+            {"Shadow", PNB_PASS_SHADOW},
+        },
+      of_lights[] = {
+          {"Shadow.", PNB_PASS_LIGHT_SHADOWS},
+          {"Blocker.", PNB_PASS_BLOCKERS},
+          {"Penumbra.", PNB_PASS_PENUMBRAE},
+          {"Map.", PNB_PASS_SHADOW_MAPS},
+      };
+    *passes = 0;
+    for (size_t i = 0; i < sizeof of_lights / sizeof *of_lights; i++)
+        if (strncmp(text, of_lights[i].name, strlen(of_lights[i].name)) == 0)
+            *passes = of_lights[i].flag;
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(text, names[i].name) == 0)
             *passes = names[i].flag;
     return *passes ||
-           tool_error("%s wants Combined, Depth, Normal, Shadow or Shadow.<name of a light>, not '%s'", option, text);
+           tool_error("%s wants Combined, Depth, Normal, Shadow or Shadow., Blocker., Penumbra. or Map.<name of a "
+                      "light>, not '%s'",
+                      option, text);
 }
 
 /* ---- Techniques, by reflection ---- */

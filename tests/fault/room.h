@@ -181,6 +181,11 @@ static inline void pass_range(const char *name, float range[2]) {
         range[1] = 1.001f;
     } else if (strncmp(name, "Shadow", 6) == 0) {
         range[1] = 1.001f;
+    } else if (strncmp(name, "Blocker.", 8) == 0 || strncmp(name, "Penumbra.", 9) == 0) {
+        range[1] = 3e38f;
+    } else if (strncmp(name, "Map.", 4) == 0) {
+        range[0] = -1;
+        range[1] = 1;
     }
 }
 

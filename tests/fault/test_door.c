@@ -296,6 +296,9 @@ static void bad_lights(void) {
     ROW(PNB_OK, "", LAMPS(light->matrix[0] = 1000; light->matrix[5] = 0.001f));
     ROW(PNB_OK, "", LAMPS(light->flags = PNB_LIGHT_NO_SHADOW));
     ROW(PNB_OK, "", LAMPS(light->flags = PNB_LIGHT_COSINE_SPOT));
+    ROW(PNB_OK, "", room.settings.passes = PNB_PASS_BLOCKERS | PNB_PASS_PENUMBRAE | PNB_PASS_SHADOW_MAPS);
+    ROW(PNB_OK, "", room.lights[ROOM_AREA].shape = PNB_AREA_ELLIPSE; LAMPS(light->spread = 1);
+        room.settings.passes = PNB_PASS_BLOCKERS);
     pnb_light *const point = &room.lights[ROOM_POINT];
     ROW(INVALID, "light 'Point': there is no technique 'NONE'", point->technique = "NONE");
     ROW(PNB_OK, "", point->technique = "");
@@ -448,7 +451,7 @@ static void bad_settings(void) {
     ROW(PNB_OK, "", settings->technique = "REFERENCE"; settings->light_samples = 1);
     ROW(PNB_OK, "", settings->technique = "REFERENCE"; settings->light_samples = 64;
         settings->width = settings->height = 2; room.scene.light_count = 1; settings->shadow_map_size = 16);
-    ROW(INVALID, "passes", settings->passes = 32);
+    ROW(INVALID, "passes", settings->passes = 256);
     ROW(INVALID, "flags", settings->flags = 1u << 31);
     ROW(PNB_OK, "", settings->flags = PNB_SETTINGS_FILM_TRANSPARENT);
     ROW(PNB_OK, "", settings->passes = 0);

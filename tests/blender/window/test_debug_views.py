@@ -6,7 +6,7 @@ import bpy
 from harness import add_light
 from window import ViewportTest
 
-from penumbra import statistics
+from penumbra import statistics, viewport
 
 
 def share(picture, is_color):
@@ -42,6 +42,15 @@ class DebugViews(ViewportTest):
                             ("umbra", lambda r, g, b: b > 2 * g and b > 2 * r)):
             self.assertGreater(share(classes, test), 0.0004, color)     # 120 of 640 x 480 pixels
         self.assertEqual(len({picture.rgb for picture in (final, shadow, *lights, classes)}), 5)
+        self.settings.viewport_light = "Key"
+        for view, name, dark in (('PENUMBRA', "penumbra", 0.3), ('BLOCKER', "blocker", 0.3), ('MAP', "map", 0.0)):
+            self.settings.viewport_view = view
+            shown = yield from self.shown("view-" + name)
+            label = next(iter(viewport._viewports))._picture.label
+            self.assertIn("Key", label)
+            self.assertNotIn("sample", label)
+            self.assertGreaterEqual(share(shown, lambda r, g, b: r + g + b == 0), dark, "nothing blocks there")
+            self.assertGreater(share(shown, lambda r, g, b: r + g + b > 30), 0.01, "something does here")
         self.settings.viewport_view = 'FINAL'
         self.assertTrue(final == (yield from self.shown("view-final-again")))
 
