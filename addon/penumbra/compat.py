@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything that differs between Blender 3.4, 4.3 and 5.2. No other file asks for a version."""
 
+import os
 from array import array
 
 import bpy
@@ -207,6 +208,21 @@ def multiply_input(node):
     """The first input of such a node."""
     name = 'A_Color' if _COMPOSITOR_IS_GROUP else 'Image'
     return next(socket for socket in node.inputs if socket.identifier == name)
+
+
+def missing_from(block):
+    """Path of the library in which a data-block that is used here is not found, so that a place-holder stands for it;
+    else None. Before Blender 4 nothing tells a place-holder: an empty thing from a file that is not there."""
+    original = block.original
+    reference = original.override_library.reference if original.override_library else original
+    if reference is None or reference.library is None:
+        return None
+    path = reference.library.filepath
+    if hasattr(reference, 'is_missing'):
+        return path if reference.is_missing else None
+    is_empty = not len(reference.vertices) if isinstance(reference, bpy.types.Mesh) else \
+        isinstance(reference, bpy.types.Object) and reference.type == 'EMPTY'
+    return path if is_empty and not os.path.exists(bpy.path.abspath(path)) else None
 
 
 def light_linking(ob):

@@ -116,6 +116,7 @@ class SceneExport:
         ob, parent = instance.object, instance.parent
         data = ob.data
         if data is None:
+            self._check_library("object", ob)   # what stands for a missing one is an Empty
             return ()
         key = ob.as_pointer(), data.as_pointer(), parent and parent.as_pointer()
         templates = self._templates.get(key)
@@ -126,6 +127,7 @@ class SceneExport:
         return templates
 
     def _make_templates(self, ob):
+        self._check_library("data", ob.data)
         slots = [self._material(slot.material) for slot in ob.material_slots]
         mesh = self._meshes.of(ob, tuple(material.needs for material in slots))
         indices = tuple(material.index for material in slots)
@@ -134,6 +136,11 @@ class SceneExport:
             yield Template(self._instance(ob, ob.name, mesh, indices), False, triangles)
         for name, mesh, slot in self._meshes.hair(ob):
             yield Template(self._instance(ob, name, mesh, indices[min(slot, len(indices) - 1):][:1]), True, 0)
+
+    def _check_library(self, kind, block):
+        path = compat.missing_from(block)
+        if path:
+            self.warnings.append(f"{kind} '{block.name}': it is missing from the library '{path}'")
 
     def _instance(self, ob, name, mesh, slots):
         return capi.Instance(mesh=mesh, name=name.encode(), flags=self._flags(ob), first_slot=self._first_slot(slots),
