@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, compositing, device, engine, overlay, presets, props, report, textures, ui, viewport
+from . import capi, compositing, device, engine, output, overlay, presets, props, report, textures, ui, viewport
 
 bl_info = {
     "name": "Penumbra",
@@ -35,6 +35,7 @@ def register():
         bpy.utils.register_class(cls)
     ui.register()
     overlay.register()
+    output.register()
     bpy.types.TOPBAR_MT_file_export.append(_menu)
     bpy.app.handlers.render_init.append(_forget_textures)
     bpy.app.handlers.render_pre.append(compositing.synchronize)
@@ -44,6 +45,7 @@ def unregister():
     bpy.app.handlers.render_pre.remove(compositing.synchronize)
     bpy.app.handlers.render_init.remove(_forget_textures)
     bpy.types.TOPBAR_MT_file_export.remove(_menu)
+    output.unregister()
     overlay.unregister()
     viewport.unregister()
     ui.unregister()

@@ -140,7 +140,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
                     shown = progress.text
                     self.update_progress(progress.fraction)
                     self.update_stats("", shown.decode(errors='replace'))
-                if self.test_break():
+                if self.is_cancelled():
                     library.job_cancel(job)
         except capi.Error as error:
             if error.result == capi.CANCELLED:
@@ -152,6 +152,10 @@ class PenumbraEngine(bpy.types.RenderEngine):
         warnings.extend(library.job_message(job, index).decode(errors='replace')
                         for index in range(library.job_message_count(job)))
         return True
+
+    def is_cancelled(self):
+        """Whether the user ended the render. Tests replace it; what Blender defines itself cannot be."""
+        return self.test_break()
 
     def _show_statistics(self, timings):
         megabytes = sum(timing.bytes for timing in timings) / 2 ** 20

@@ -127,7 +127,7 @@ class SceneExport:
         return templates
 
     def _make_templates(self, ob):
-        self._check_library("data", ob.data)
+        self._check_library("data", ob.original.data)
         slots = [self._material(slot.material) for slot in ob.material_slots]
         mesh = self._meshes.of(ob, tuple(material.needs for material in slots))
         indices = tuple(material.index for material in slots)

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What nobody should have in a scene: a finite picture and a line that names the object, or an error."""
 
+import contextlib
 import math
 import os
+import subprocess
+import sys
+from unittest import mock
 
 import bpy
 
-from harness import (SceneTest, add_camera, add_cube, add_light, add_mesh, add_plane, output, run_blender,
+from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_mesh, add_plane, output, run_blender,
                      white_material)
 
 from penumbra import report
@@ -90,16 +94,30 @@ class BadInput(SceneTest):
         self.finite("nosuch.png", "corrupted.png")
 
     def test_missing_library(self):
-        path = output("library.blend")
-        bpy.data.libraries.write(path, {add_cube("Linked")})
+        """An object that is not found, one whose mesh is not, and an override of the first."""
+        path, meshes = output("library.blend"), output("meshes.blend")
+        cube = add_cube("Linked", location=(1, 0, 1))
+        bpy.data.libraries.write(path, {cube})
+        bpy.data.libraries.write(meshes, {add_cube("Shape").data})
         with bpy.data.libraries.load(path, link=True) as (_source, target):
             target.objects = ["Linked"]
-        self.scene.collection.objects.link(target.objects[0])
+        linked = target.objects[0]
+        with bpy.data.libraries.load(meshes, link=True) as (_source, target):
+            target.meshes = ["Shape"]
+        mesh = target.meshes[0]
+        bpy.data.objects["Shape"].data = mesh
+        self.scene.collection.objects.link(linked)
         blend = self.save("links")
         os.remove(path)
+        os.remove(meshes)
         code, text = run_blender(blend, '-E', 'PENUMBRA', '-o', output("linked_"), '-F', 'PNG', '-f', '1')
         self.assertEqual(code, 0, text)
         self.assertTrue(os.path.exists(output("linked_0001.png")), text)
+        self.assertRegex(text, r"object 'Linked': it is missing from the library '.*library\.blend'")
+        self.assertRegex(text, r"data 'Shape': it is missing from the library '.*meshes\.blend'")
+        bpy.ops.wm.open_mainfile(filepath=blend)
+        self.scene = bpy.context.scene
+        self.finite("'Linked': it is missing", "'Shape': it is missing")
 
     def test_sizes(self):
         render = self.scene.render
@@ -110,22 +128,94 @@ class BadInput(SceneTest):
                 self.assertEqual(len(self.finite()), width * height)
 
     def test_names(self):
-        for number, name in enumerate(("Würfel ☂", "two\nlines", "dot.001", "'quoted' \"twice\"", "x" * 63)):
+        """Each name in the passes of the lights and in the report: a loose vertex is no face, and is told by name."""
+        names = "Würfel ☂", "two\nlines", "dot.001", "'quoted' \"twice\"", "x" * 63
+        for number, name in enumerate(names):
             cube = add_cube(name, location=(number - 2, 0, 1), half=0.2)
             cube.data.materials.append(white_material(name))
+            cube.data.vertices[0].co.x = math.nan
             add_light(name, 'POINT', location=(number - 2, 0, 2), energy=5)
+            self.assertEqual(cube.name, name)
         self.layer.penumbra.use_pass_light_shadows = True
-        self.finite()
+        picture = self.render()
+        self.finite(*(f"'{name}'" for name in names))
+        lights = [ob.name for ob in bpy.data.objects if ob.type == 'LIGHT']
+        passes = {channel.split('.Shadow.')[1].rsplit('.', 1)[0] for channel in picture if '.Shadow.' in channel}
+        # A file's channel has the first 47 bytes of a light's name, later the first 56.
+        length = max(map(len, passes))
+        self.assertGreaterEqual(length, 47)
+        self.assertEqual(sorted(passes), sorted(name[:length] for name in lights))
+
+    def save_for_output(self):
+        self.scene.render.resolution_x, self.scene.render.resolution_y = 64, 48
+        return self.save("unwritable")
+
+    def assert_not_written(self, blend, path, kind='PNG'):
+        """Exit code, message, and what is there afterwards."""
+        code, text = run_blender(blend, '-E', 'PENUMBRA', '-o', path, '-F', kind, '-f', '1')
+        self.assertNotEqual(code, 0, text)
+        self.assertRegex(text, r"(?i)error|cannot|could not|unable")
+        self.assertNotRegex(text, r'penumbra/\w+\.py')   # no exception of ours
 
     def test_unwritable_outputs(self):
-        """As root every folder is writable: a file stands where a folder should be, and a disk that is full."""
-        blend = self.save("unwritable")
+        """A file, or a device, where a folder should be."""
+        blend = self.save_for_output()
         with open(output("file"), 'wb'):
             pass
         for path in (output("file") + '/frame_', '/dev/full/frame_'):
-            code, text = run_blender(blend, '-E', 'PENUMBRA', '-o', path, '-F', 'PNG', '-f', '1')
-            self.assertNotEqual(code, 0, text)
-            self.assertNotRegex(text, r'penumbra/\w+\.py')   # no exception of ours
+            self.assert_not_written(blend, path)
+
+    def mount(self, *options):
+        """A disk of 64 KiB in memory, as root can mount one; its folder."""
+        folder = output("disk")
+        os.makedirs(folder, exist_ok=True)
+        done = subprocess.run(['mount', '-t', 'tmpfs', '-o', ','.join(('size=64k', *options)), 'tmpfs', folder],
+                              stderr=subprocess.PIPE, check=False)
+        if done.returncode:
+            self.skipTest(f"no disk can be mounted here: {done.stderr.decode(errors='replace').strip()}")
+        self.addCleanup(subprocess.run, ['umount', folder], check=True)
+        return folder
+
+    def test_read_only_folder(self):
+        folder = self.mount('ro')
+        self.assert_not_written(self.save_for_output(), folder + '/frame_')
+        self.assertEqual(os.listdir(folder), [])
+
+    def test_full_disk(self):
+        """Nothing that looks like a picture is left; with room again the same Blender goes on."""
+        blend = self.save_for_output()
+        folder = self.mount()
+        with open(folder + '/filler', 'wb', buffering=0) as filler, contextlib.suppress(OSError):
+            while filler.write(bytes(4096)):
+                pass
+        for kind in ('PNG', 'JPEG', 'OPEN_EXR', 'TIFF'):
+            with self.subTest(kind=kind):
+                self.assert_not_written(blend, folder + '/frame_', kind)
+                self.assertEqual(os.listdir(folder), ['filler'])
+        self.scene.render.image_settings.file_format = 'PNG'
+        self.scene.render.filepath = folder + '/here.png'
+        failures = sys.modules[ADDON].output.failures
+        self.addCleanup(failures.clear)     # else this Blender would end with status 1
+        with contextlib.suppress(RuntimeError):
+            bpy.ops.render.render(write_still=True)
+        self.assertFalse(os.path.exists(folder + '/here.png'))
+        os.remove(folder + '/filler')
+        bpy.ops.render.render(write_still=True)
+        self.assertGreater(os.path.getsize(folder + '/here.png'), 100)
+
+    def test_cancelled_and_restarted(self):
+        """Ten renders cancelled at other moments; each is followed by one that is the same as before."""
+        engine = sys.modules[ADDON].engine.PenumbraEngine
+        before = self.finite()
+        for number in range(10):
+            asked = []
+            with mock.patch.object(engine, 'is_cancelled', lambda _self: asked.append(1) or len(asked) > number):
+                self.scene.penumbra.samples = 4096
+                bpy.ops.render.render()
+            self.assertGreater(len(asked), number)              # it was cancelled,
+            self.assertLessEqual(len(asked), number + 50)       # within a second; it would take ten
+            self.scene.penumbra.samples = 1
+            self.assertEqual(self.finite(), before)
 
     def test_handler_edits_the_scene(self):
         """Objects and lights that come and go while frames are rendered."""

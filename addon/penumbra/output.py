@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a picture has arrived on the disk: Blender's writers overlook that it is full and leave a part of one."""
+
+import atexit
+import os
+import time
+
+import bpy
+
+# Last bytes of whole files.
+_ENDS = {b'\x89PNG': b'IEND\xaeB`\x82', b'\xff\xd8\xff': b'\xff\xd9'}
+
+failures = []       # messages; with one, a Blender without a window ends with status 1
+_started = [0.0]    # when the render began
+
+
+def find_fault(path):
+    """What is wrong with a file that was just written, or None."""
+    try:
+        with open(path, 'rb') as file:
+            start = file.read(8)
+            end = _ENDS.get(start[:4]) or _ENDS.get(start[:3])
+            if end:
+                file.seek(-len(end), os.SEEK_END)
+                return None if file.read() == end else "its end is missing"
+    except OSError as error:
+        return error.strerror
+    return _find_fault_of_disk(path) if start else "it is empty"
+
+
+def _find_fault_of_disk(path):
+    """Of other formats we see only whether the disk, or a quota, has room for one block more."""
+    probe = path + '.probe'
+    try:
+        with open(probe, 'wb') as file:
+            file.write(bytes(512))
+    except OSError as error:
+        return error.strerror
+    finally:
+        if os.path.exists(probe):
+            os.remove(probe)
+    return None
+
+
+def _newest(paths):
+    """The one written last; the first if there is none. Blender does not tell whether frames are numbered."""
+    return max((path for path in paths if os.path.isfile(path)), key=os.path.getmtime, default=paths[0])
+
+
+def _paths(scene):
+    render = scene.render
+    if render.use_multiview and render.image_settings.views_format == 'INDIVIDUAL':
+        return [render.frame_path(frame=scene.frame_current, view=view.name) for view in render.views if view.use]
+    path = bpy.path.abspath(render.filepath)
+    still = path if path.lower().endswith(render.file_extension) else path + render.file_extension
+    return [_newest([render.frame_path(frame=scene.frame_current), still])]
+
+
+def _remove_faulty(scene):
+    """(path, fault) of what was written in this render and is not whole."""
+    if scene.render.engine != 'PENUMBRA' or scene.render.is_movie_format:
+        return
+    for path in _paths(scene):
+        fault = find_fault(path)
+        if fault:
+            if os.path.isfile(path) and os.path.getmtime(path) >= _started[0]:
+                os.remove(path)
+            yield path, fault
+
+
+@bpy.app.handlers.persistent
+def note_start(*_arguments):
+    """Handler of `render_pre`. File systems cut times to their clock's ticks."""
+    _started[0] = time.time() - 0.1
+
+
+@bpy.app.handlers.persistent
+def check_written(scene, *_arguments):
+    """Handler of `render_write`: removes what is not whole, says so, and remembers it for the exit status."""
+    for path, fault in _remove_faulty(scene):
+        failures.append(f"'{path}' could not be written: {fault}")
+        print(f"Error: Penumbra: {failures[-1]}", flush=True)
+
+
+@bpy.app.handlers.persistent
+def clean_up(scene, *_arguments):
+    """Handler of `render_cancel`: after failures that Blender noticed itself a part of a picture may lie there."""
+    for _path, _fault in _remove_faulty(scene):
+        pass
+
+
+def _end_with_failure():
+    """Blender itself ends with 0. It has closed its files when Python ends."""
+    if failures and bpy.app.background:
+        os._exit(1)
+
+
+# Not in `register`: Blender disables all add-ons before Python ends.
+atexit.register(_end_with_failure)
+
+_HANDLERS = (('render_pre', note_start), ('render_write', check_written), ('render_cancel', clean_up))
+
+
+def register():
+    for kind, handler in _HANDLERS:
+        getattr(bpy.app.handlers, kind).append(handler)
+
+
+def unregister():
+    for kind, handler in _HANDLERS:
+        getattr(bpy.app.handlers, kind).remove(handler)
