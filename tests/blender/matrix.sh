@@ -4,7 +4,7 @@ set -euo pipefail
 
 help() {
     cat <<EOT
-Usage: tests/blender/matrix.sh [--only VERSION] [--scenes] BUILD_DIR [--window] [TEST...]
+Usage: tests/blender/matrix.sh [--only VERSION] [--scenes | --script NAME] BUILD_DIR [--window] [TEST...]
 Runs the tests of this folder in three Blenders: the system's, and those of Debian trixie (4.3) and sid (5.2) in roots
 of their own, made with debootstrap from the mirror that apt uses and kept in BUILD_DIR/matrix, or in the folder that
 PENUMBRA_CACHE names. A root takes about 2 GB; delete it to make it anew. Needs root. The last line counts all tests.
@@ -12,6 +12,7 @@ PENUMBRA_CACHE names. A root takes about 2 GB; delete it to make it anew. Needs 
   --only VERSION   system, trixie or sid; may be given several times
   --scenes         instead of the tests, compares the scenes of scenes/ with Cycles, or those named, and writes
                    BUILD_DIR/scenes/report.html; takes about ten minutes a version
+  --script NAME    instead of the tests, runs soak or scale
   TEST             a module, class or method such as test_render.Sizes
   --window         only tests that need a window; TEST then is one of them
 EOT
@@ -25,7 +26,7 @@ fail() {
 here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 source=$(CDPATH='' cd -- "$here/../.." && pwd)
 versions=()
-scenes=
+scenes= script=
 while [ $# -gt 0 ]; do
     case $1 in
     --help) help; exit 0 ;;
@@ -34,6 +35,10 @@ while [ $# -gt 0 ]; do
         versions+=("$2")
         shift 2 ;;
     --scenes) scenes=1; shift ;;
+    --script)
+        [[ ${2-} =~ ^(soak|scale)$ ]] || fail "--script needs soak or scale"
+        script=$2
+        shift 2 ;;
     -*) fail "unknown option '$1'; see --help" ;;
     *) break ;;
     esac
@@ -110,6 +115,7 @@ run_inside() {
         command=(sh "$source_there/tests/blender/scenes/run.sh" "$build_there" "$results_there" "$@")
     else
         command=(sh "$source_there/tests/blender/run.sh" "$build_there" "$@")
+        [ -z "$script" ] || command=(env "TEST_SCRIPT=$source_there/tests/blender/$script.py" "${command[@]}")
     fi
     if [ "$version" = system ]; then
         "${command[@]}"

@@ -57,7 +57,11 @@ def new_scene():
     return scene
 
 
+RESULTS = []
+
+
 def report(text, value, unit, limit):
+    RESULTS.append(value <= limit)
     print(f"SCALE {'ok    ' if value <= limit else 'MISSED'} {text}: {value:.1f} {unit} (limit {limit} {unit})", flush=True)
 
 
@@ -137,6 +141,8 @@ def main():
     addon = sys.modules[ADDON]
     for measure in (many_triangles, many_instances, many_lights):
         measure(addon)
+    print(f"{sum(RESULTS)} passed, {len(RESULTS) - sum(RESULTS)} failed", flush=True)
+    sys.exit(not all(RESULTS))
 
 
 main()
