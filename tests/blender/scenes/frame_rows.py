@@ -213,7 +213,7 @@ def stereo_parallel(stage):
 
 
 # Cycles takes the depth of the first surface of the first sample, inside the pixel; ours is at its centre.
-@row('frame', channel='Depth', light=0.01)
+@row('frame', channel='Depth', light=0.005)
 def depth_pass(stage):
     """The depth pass, along the camera's axis."""
     stage.cube()

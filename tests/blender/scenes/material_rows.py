@@ -206,6 +206,7 @@ def image_linear(stage):
 @row('materials')
 def image_clipped(stage):
     """Beyond its edges the image is black."""
+    refine(stage)
     _beyond(stage, 'CLIP')
 
 
@@ -292,6 +293,7 @@ def image_alpha(stage):
 @row('materials')
 def image_emission(stage):
     """An image as emission."""
+    refine(stage)
     nodes = Nodes()
     texture, shader = nodes.add('TexImage'), nodes.add('Emission', Strength=0.5)
     texture.image = picture(color=lambda x, y: [x / 5, y / 5, 0.2])

@@ -8,7 +8,7 @@ import bpy
 
 from harness import add_camera, add_cube, add_light, add_mesh, add_object, add_plane, white_material
 
-__all__ = ['ROWS', 'Stage', 'row', 'radians', 'bpy', 'add_camera', 'add_cube', 'add_light', 'add_mesh', 'add_object',
+__all__ = ['ROWS', 'Stage', 'row', 'refine', 'radians', 'bpy', 'add_camera', 'add_cube', 'add_light', 'add_mesh', 'add_object',
            'add_plane', 'white_material']
 
 ROWS = []
@@ -16,10 +16,15 @@ ROWS = []
 WIDTH, HEIGHT = 96, 64
 
 # Largest errors that pass, unless a row says why it needs others.
-# Coverage: mean difference of alpha; half of one sub-pixel sample in 36 on outlines, which a tenth of the pixels touch, and
-# Cycles' noise there. Position: distance of the centres of light, in pixels. Light: RMSE over the mean, of which the noise
-# of 256 samples of Cycles and of our sub-pixel samples is up to 0.02.
-LIMITS = {'coverage': 0.004, 'position': 0.1, 'light': 0.025}
+# Coverage: mean difference of alpha; a tenth of the pixels touch outlines, where half of one sub-pixel sample in 144 and
+# Cycles' noise are .0004 together. Position: distance of the centres of light, in pixels. Light: RMSE over the mean, of which
+# the noise of 256 samples of Cycles and of our sub-pixel samples is up to .018.
+LIMITS = {'coverage': 0.002, 'position': 0.1, 'light': 0.02}
+
+
+def refine(stage):
+    """More samples of both, for a picture that is mostly outlines, or mostly dark: noise counts more there."""
+    stage.scene.cycles.samples, stage.scene.penumbra.samples = 1024, 576
 
 
 @dataclass

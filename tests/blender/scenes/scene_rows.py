@@ -120,6 +120,7 @@ def surface(stage):
 @row('scene')
 def text(stage):
     """A text with depth."""
+    refine(stage)
     data = bpy.data.curves.new("Text", 'FONT')
     data.body, data.extrude, data.size, data.align_x = "Aé", 0.1, 1.4, 'CENTER'
     stage.show(add_object("Text", data, location=(0, -0.4, 0.5), rotation=(0.4, 0, 0)))
@@ -406,8 +407,7 @@ def holdout(stage):
 @row('scene')
 def shadow_catcher(stage):
     """The floor shows nothing but the shadow on it."""
-    # Only the cube gives light, a tenth of the picture's: the noise of its outlines counts ten times as much.
-    stage.scene.cycles.samples, stage.scene.penumbra.samples = 1024, 576
+    refine(stage)   # only the cube gives light, a tenth of the picture's
     stage.cube()
     stage.floor.is_shadow_catcher = True
 
@@ -522,6 +522,7 @@ def light_ellipse_scaled(stage):
 @row('scene')
 def light_spread(stage):
     """An area light that shines into a cone of 60 degrees."""
+    refine(stage)
     _only(stage, 'AREA', size=0.7, spread=radians(60), rotation=(0.1, 0.2, 0))
 
 
