@@ -20,13 +20,13 @@ struct entry {
 entry load(uint index) {
     entry e;
     for (uint word = 0u; word < FRAGMENT_WORDS; word++)
-        e.words[word] = fragments[FRAGMENT_WORDS * index + word];
+        e.words[word] = fragment_word(FRAGMENT_WORDS * index + word);
     return e;
 }
 
 void store(uint index, entry e) {
     for (uint word = 0u; word < FRAGMENT_WORDS; word++)
-        fragments[FRAGMENT_WORDS * index + word] = e.words[word];
+        fragment_set_word(FRAGMENT_WORDS * index + word, e.words[word]);
 }
 
 // Equal depths by opacity: the order must not depend on which was drawn first.

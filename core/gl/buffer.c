@@ -3,10 +3,23 @@
 
 #define MIB(bytes) ((double)(bytes) / 1048576.0)
 
-static pnb_result allocate(const struct gl *gl, uint64_t bytes, const char *what, GLuint *id) {
-    if (bytes > (uint64_t)gl->max_buffer_size)
+/* Binary logarithm of the words in one block of a split buffer. */
+static int split_shift(const struct gl *gl) {
+    int shift = 2;
+    while (shift < 25 && (8ll << shift) <= gl->max_buffer_size)
+        shift++;
+    return shift;
+}
+
+static uint64_t split_limit(const struct gl *gl) {
+    const uint64_t split = (uint64_t)GL_BUFFER_BLOCKS * 4 << split_shift(gl);
+    return split > (uint64_t)gl->max_buffer_size ? split : (uint64_t)gl->max_buffer_size;
+}
+
+static pnb_result allocate(const struct gl *gl, uint64_t bytes, uint64_t limit, const char *what, GLuint *id) {
+    if (bytes > limit)
         return error_set(PNB_ERROR_OUT_OF_MEMORY, "%s: %.0f MiB of memory are needed, this OpenGL allows %.0f MiB",
-                         what, MIB(bytes), MIB(gl->max_buffer_size));
+                         what, MIB(bytes), MIB(limit));
     gl->GenBuffers(1, id);
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, *id);
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)bytes, NULL, GL_DYNAMIC_COPY);
@@ -19,14 +32,14 @@ static pnb_result allocate(const struct gl *gl, uint64_t bytes, const char *what
     return result;
 }
 
-pnb_result gl_buffer_ensure(const struct gl *gl, struct gl_buffer *buffer, uint64_t bytes, uint64_t kept,
-                            const char *what) {
+static pnb_result ensure(const struct gl *gl, struct gl_buffer *buffer, uint64_t bytes, uint64_t limit, uint64_t kept,
+                         const char *what) {
     if (buffer->id && buffer->bytes >= bytes)
         return PNB_OK;
     if (kept == 0)
         gl_buffer_free(gl, buffer);
     GLuint id = 0;
-    pnb_result result = allocate(gl, bytes, what, &id);
+    pnb_result result = allocate(gl, bytes, limit, what, &id);
     if (result != PNB_OK)
         return result;
     if (kept > 0) {
@@ -38,6 +51,16 @@ pnb_result gl_buffer_ensure(const struct gl *gl, struct gl_buffer *buffer, uint6
     return gl_check(gl, what);
 }
 
+pnb_result gl_buffer_ensure(const struct gl *gl, struct gl_buffer *buffer, uint64_t bytes, uint64_t kept,
+                            const char *what) {
+    return ensure(gl, buffer, bytes, (uint64_t)gl->max_buffer_size, kept, what);
+}
+
+pnb_result gl_buffer_ensure_split(const struct gl *gl, struct gl_buffer *buffer, uint64_t bytes, uint64_t kept,
+                                  const char *what) {
+    return ensure(gl, buffer, bytes, split_limit(gl), kept, what);
+}
+
 void gl_buffer_free(const struct gl *gl, struct gl_buffer *buffer) {
     if (buffer->id)
         gl->DeleteBuffers(1, &buffer->id);
@@ -46,6 +69,26 @@ void gl_buffer_free(const struct gl *gl, struct gl_buffer *buffer) {
 
 void gl_buffer_bind(const struct gl *gl, const struct gl_buffer *buffer, GLuint block) {
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, block, buffer->id);
+}
+
+bool gl_buffer_is_split(const struct gl *gl, const struct gl_buffer *buffer) {
+    return buffer->bytes > (uint64_t)gl->max_buffer_size;
+}
+
+int gl_buffer_bind_split(const struct gl *gl, const struct gl_buffer *buffer, const GLuint blocks[GL_BUFFER_BLOCKS]) {
+    const int shift = split_shift(gl);
+    if (!gl_buffer_is_split(gl, buffer)) {
+        gl_buffer_bind(gl, buffer, blocks[0]);
+        return shift;
+    }
+    const uint64_t size = 4ull << shift;
+    for (uint64_t i = 0; i < GL_BUFFER_BLOCKS; i++) {
+        const uint64_t first = i * size < buffer->bytes ? i * size : 0; /* a block is never without a buffer */
+        const uint64_t rest = buffer->bytes - first;
+        gl->BindBufferRange(GL_SHADER_STORAGE_BUFFER, blocks[i], buffer->id, (GLintptr)first,
+                            (GLsizeiptr)(rest < size ? rest : size));
+    }
+    return shift;
 }
 
 void gl_buffer_clear(const struct gl *gl, const struct gl_buffer *buffer, uint64_t bytes) {

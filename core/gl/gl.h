@@ -15,6 +15,7 @@
     X(PFNGLBEGINQUERYPROC, BeginQuery)                                                                                 \
     X(PFNGLBINDBUFFERPROC, BindBuffer)                                                                                 \
     X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                                                                         \
+    X(PFNGLBINDBUFFERRANGEPROC, BindBufferRange)                                                                       \
     X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                                                                       \
     X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture)                                                                     \
     X(PFNGLBINDSAMPLERPROC, BindSampler)                                                                               \

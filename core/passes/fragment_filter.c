@@ -74,13 +74,14 @@ static pnb_result merge_level(struct frame *frame, const struct fragment_level *
                               const struct fragment_filter *filter, enum phase phase, struct fragment_lists *lists,
                               uint32_t cursor[2]) {
     const struct gl *gl = frame->gl;
-    const struct program_desc desc = {.compute = "pass_fragments_merge.comp",
-                                      .defines = {fragment_defines(frame->scene), accumulation_define(filter->accumulation)}};
+    const struct program_desc desc = {
+        .compute = "pass_fragments_merge.comp",
+        .defines = {fragment_defines(frame, lists), accumulation_define(filter->accumulation)}};
     GLuint program;
     pnb_result result = program_use(&frame->renderer->programs, &desc, &program);
     if (result != PNB_OK)
         return result;
-    fragment_lists_bind(gl, lists);
+    fragment_lists_bind(gl, program, lists);
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, frame->renderer->cursor_buffer);
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, 2 * sizeof *cursor, cursor, GL_STREAM_READ);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, frame->renderer->cursor_buffer);
@@ -111,7 +112,7 @@ static pnb_result add_level(struct frame *frame, const struct fragment_level *le
     } else {
         result = merge_level(frame, level, views, filter, COUNT, lists, cursor);
         if (result == PNB_OK)
-            result = gl_buffer_ensure(gl, &lists->fragments, used + size * cursor[1], used, what);
+            result = gl_buffer_ensure_split(gl, &lists->fragments, used + size * cursor[1], used, what);
         if (result == PNB_OK)
             result = merge_level(frame, level, views, filter, FILL, lists, cursor);
     }

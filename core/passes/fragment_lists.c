@@ -3,17 +3,20 @@
  * read back after the scan, so that storage always suffices and no fragment is ever left out. */
 #include "passes.h"
 
-const char *fragment_defines(const struct scene *scene) {
-    return scene->colored ? "#define COLORED\n" : NULL;
+const char *fragment_defines(const struct frame *frame, const struct fragment_lists *lists) {
+    static const char *const defines[2][2] = {{NULL, "#define SPLIT_FRAGMENTS\n"},
+                                              {"#define COLORED\n", "#define COLORED\n#define SPLIT_FRAGMENTS\n"}};
+    return defines[frame->scene->colored][gl_buffer_is_split(frame->gl, &lists->fragments)];
 }
 
 uint64_t fragment_size(const struct scene *scene) {
     return scene->colored ? 12 : 8;
 }
 
-void fragment_lists_bind(const struct gl *gl, const struct fragment_lists *lists) {
+void fragment_lists_bind(const struct gl *gl, GLuint program, const struct fragment_lists *lists) {
+    static const GLuint blocks[GL_BUFFER_BLOCKS] = {3, 6, 7, 0};
     gl_buffer_bind(gl, &lists->heads, 2);
-    gl_buffer_bind(gl, &lists->fragments, 3);
+    program_set_int(gl, program, "fragment_block_shift", gl_buffer_bind_split(gl, &lists->fragments, blocks));
 }
 
 void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists) {
@@ -23,7 +26,8 @@ void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists) {
 }
 
 static pnb_result use_programs(struct frame *frame, const struct light_views *views, bool collect, enum casters casters,
-                               int layer, int side, const mat4 clip, GLuint programs[2]) {
+                               int layer, int side, const mat4 clip, const struct fragment_lists *lists,
+                               GLuint programs[2]) {
     const struct light_view *view = &views->views[layer];
     static const char *const defines[2][2] = {{NULL, "#define SPECIAL\n"},
                                               {"#define COLLECT\n", "#define COLLECT\n#define SPECIAL\n"}};
@@ -31,12 +35,13 @@ static pnb_result use_programs(struct frame *frame, const struct light_views *vi
     for (int special = 0; special < 2; special++) {
         const struct program_desc desc = {.vertex = "pass_shadow_map.vert",
                                           .fragment = "pass_fragments.frag",
-                                          .defines = {fragment_defines(frame->scene), defines[collect][special],
+                                          .defines = {fragment_defines(frame, lists), defines[collect][special],
                                                       view->perspective != 0.0f ? "#define PERSPECTIVE\n" : NULL,
                                                       views->clip_behind ? "#define CLIP_BEHIND\n" : NULL}};
         pnb_result result = program_use(&frame->renderer->programs, &desc, &programs[special]);
         if (result != PNB_OK)
             return result;
+        fragment_lists_bind(gl, programs[special], lists);
         program_set_mat4(gl, programs[special], "projection", (const float *)clip);
         program_set_vec2(gl, programs[special], "depth_planes", (const float[2]){view->near_depth, view->far_depth});
         program_set_vec4(gl, programs[special], "front", views->front);
@@ -49,7 +54,8 @@ static pnb_result use_programs(struct frame *frame, const struct light_views *vi
 
 /* Counts or collects the fragments of one view. */
 static pnb_result draw_view(struct frame *frame, const struct light_views *views, bool collect,
-                            const struct fragment_choice *choice, const struct gl_texture *map, int layer) {
+                            const struct fragment_choice *choice, const struct gl_texture *map, int layer,
+                            const struct fragment_lists *lists) {
     struct renderer *renderer = frame->renderer;
     const struct gl_target target = {.depth = map, .layer = layer};
     pnb_result result = gl_target_bind(frame->gl, renderer->framebuffer, &target);
@@ -59,7 +65,7 @@ static pnb_result draw_view(struct frame *frame, const struct light_views *views
     light_view_projection(&views->views[layer], projection);
     glm_mat4_mul(projection, (vec4 *)views->views[layer].from_world, clip);
     GLuint programs[2];
-    result = use_programs(frame, views, collect, choice->casters, layer, map->width, clip, programs);
+    result = use_programs(frame, views, collect, choice->casters, layer, map->width, clip, lists, programs);
     if (result != PNB_OK)
         return result;
     const struct draw_programs draw = {programs[0], programs[1], choice->casters, PNB_MATERIAL_CULL_SHADOW,
@@ -74,11 +80,10 @@ static pnb_result draw_views(struct frame *frame, const struct light_views *view
     pnb_result result = timer_begin(&frame->renderer->timer, collect ? "Fragment collect" : "Fragment count");
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
-    fragment_lists_bind(gl, lists);
     if (views->clip_behind)
         gl->Enable(GL_CLIP_DISTANCE0);
     for (int i = 0; i < views->count && result == PNB_OK; i++)
-        result = draw_view(frame, views, collect, choice, map, i);
+        result = draw_view(frame, views, collect, choice, map, i, lists);
     gl->Disable(GL_CLIP_DISTANCE0);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     timer_end(&frame->renderer->timer, collect ? lists->fragments.bytes : lists->heads.bytes);
@@ -95,7 +100,7 @@ static pnb_result dispatch(struct frame *frame, const char *name, GLuint program
     pnb_result result = timer_begin(&frame->renderer->timer, name);
     if (result != PNB_OK)
         return result;
-    fragment_lists_bind(gl, lists);
+    fragment_lists_bind(gl, program, lists);
     gl->Uniform1ui(gl->GetUniformLocation(program, "head_count"), heads);
     const uint32_t groups = (heads + per_group - 1) / per_group;
     gl->DispatchCompute(groups < MOST_GROUPS ? groups : MOST_GROUPS, (groups + MOST_GROUPS - 1) / MOST_GROUPS, 1);
@@ -112,7 +117,7 @@ static pnb_result scan(struct frame *frame, uint32_t heads, struct fragment_list
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, &zero, GL_STREAM_READ);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, cursor);
     const struct program_desc desc = {.compute = "pass_fragments_scan.comp",
-                                      .defines = {fragment_defines(frame->scene)}};
+                                      .defines = {fragment_defines(frame, lists)}};
     GLuint program;
     pnb_result result = program_use(&frame->renderer->programs, &desc, &program);
     if (result == PNB_OK)
@@ -135,7 +140,7 @@ static pnb_result sort(struct frame *frame, const struct light_views *views, con
     const struct gl *gl = frame->gl;
     const bool joins = choice->joined > 0.0f;
     const struct program_desc desc = {.compute = "pass_fragments_sort.comp",
-                                      .defines = {fragment_defines(frame->scene), joins ? "#define JOIN\n" : NULL,
+                                      .defines = {fragment_defines(frame, lists), joins ? "#define JOIN\n" : NULL,
                                                   joins ? accumulation_define(choice->accumulation) : NULL}};
     GLuint program;
     pnb_result result = program_use(&frame->renderer->programs, &desc, &program);
@@ -166,7 +171,7 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
         gpu_scene_find_solids(frame->renderer->scene, frame->scene);
     if ((result = draw_views(frame, views, false, choice, map, lists)) != PNB_OK ||
         (result = scan(frame, (uint32_t)heads, lists)) != PNB_OK ||
-        (result = gl_buffer_ensure(gl, &lists->fragments, lists->count * fragment_size(frame->scene), 0, what)) !=
+        (result = gl_buffer_ensure_split(gl, &lists->fragments, lists->count * fragment_size(frame->scene), 0, what)) !=
             PNB_OK ||
         (result = draw_views(frame, views, true, choice, map, lists)) != PNB_OK)
         return result;

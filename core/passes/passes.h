@@ -86,7 +86,8 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
                                struct fragment_lists *lists);
 /* The define that tells shaders how opacity is accumulated. */
 const char *accumulation_define(int accumulation);
-void fragment_lists_bind(const struct gl *gl, const struct fragment_lists *lists);
+/* Gives the current program the lists. */
+void fragment_lists_bind(const struct gl *gl, GLuint program, const struct fragment_lists *lists);
 void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists);
 /* fragment_filter.c: lists of a map of so many texels per side -> further levels of them. */
 struct fragment_filter {
@@ -105,8 +106,9 @@ uint32_t fragment_levels(struct fragment_level levels[MAX_FRAGMENT_LEVELS], cons
                          int side, int layers);
 /* Bytes of one fragment. */
 uint64_t fragment_size(const struct scene *scene);
-/* What every shader that includes common_fragments.glsl needs: whether opacity has a colour. NULL: nothing. */
-const char *fragment_defines(const struct scene *scene);
+/* What every shader that includes common_fragments.glsl needs: whether opacity has a colour, and fragments several
+ * blocks. NULL: nothing. */
+const char *fragment_defines(const struct frame *frame, const struct fragment_lists *lists);
 /* min_max.c: map -> pyramid, RG32F, S/2 x S/2 x layers with all levels: least and greatest depth. */
 pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struct gl_texture *pyramid);
 /* gauss.c: texture, any float format with a layer per view -> the same, convolved with a Gaussian of 3, 5 or 7 texels

@@ -19,8 +19,8 @@ pnb_result ensure_subsampling(struct frame *frame, bool wanted) {
     pnb_result result = gl_texture_ensure(frame->gl, &renderer->coarse_visibility, GL_RGBA16F,
                                           coarse_size(crop[0], crop[2]), coarse_size(crop[1], crop[3]), 0, 1);
     if (result == PNB_OK)
-        result = gl_texture_ensure(frame->gl, &renderer->pending, GL_DEPTH_COMPONENT32F, frame->width, frame->height, 0,
-                                   1);
+        result =
+            gl_texture_ensure(frame->gl, &renderer->pending, GL_DEPTH_COMPONENT32F, frame->width, frame->height, 0, 1);
     return result;
 }
 
@@ -39,8 +39,7 @@ pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Interpolation")) != PNB_OK)
         return result;
-    const struct gl_target target = {
-        .colors = {&renderer->visibility}, .color_count = 1, .depth = &renderer->pending};
+    const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1, .depth = &renderer->pending};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) == PNB_OK) {
         const float pending = 1.0f;
         gl->Disable(GL_BLEND);

@@ -112,7 +112,7 @@ static pnb_result draw_pixels(struct frame *frame, const struct frame_light *lig
                                       .fragment = "pass_visibility.frag",
                                       .technique = light->technique->shader,
                                       .defines = {light_defines(&light->emitter, &light->views),
-                                                  technique_defines(light), fragment_defines(frame->scene),
+                                                  technique_defines(light), fragment_defines(frame, &light->lists),
                                                   coarse ? "#define EVERY_OTHER_PIXEL\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
@@ -138,8 +138,8 @@ static pnb_result draw_pixels(struct frame *frame, const struct frame_light *lig
 
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles) {
     /* Between keys few pixels are drawn, and hardly any with all its neighbours. */
-    const bool subsampled = technique_subsamples(light->technique, light->parameters) &&
-                            tiles == TILES_NONE && reuse_is_key(frame);
+    const bool subsampled =
+        technique_subsamples(light->technique, light->parameters) && tiles == TILES_NONE && reuse_is_key(frame);
     if (!subsampled)
         return draw_pixels(frame, light, tiles, PIXELS_WANTED);
     pnb_result result = draw_pixels(frame, light, tiles, PIXELS_EVERY_OTHER);

@@ -183,7 +183,7 @@ static void multilayer_bind(struct frame *frame, const struct frame_light *light
     gl->Uniform4iv(gl->GetUniformLocation(program, "levels"), MAX_FRAGMENT_LEVELS, levels[0]);
     gl->Uniform1fv(gl->GetUniformLocation(program, "filter_widths"), MAX_FRAGMENT_LEVELS, widths);
     program_set_int(gl, program, "level_count", (int)lists->level_count);
-    fragment_lists_bind(gl, lists);
+    fragment_lists_bind(gl, program, lists);
 }
 
 const struct technique technique_multilayer = {

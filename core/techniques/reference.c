@@ -68,7 +68,8 @@ static pnb_result add_sample(struct frame *frame, const struct frame_light *ligh
     const struct gl *gl = frame->gl;
     const struct program_desc desc = {.vertex = "pass_screen.vert",
                                       .fragment = "pass_reference.frag",
-                                      .defines = {light_defines(point, views), fragment_defines(frame->scene),
+                                      .defines = {light_defines(point, views),
+                                                  fragment_defines(frame, &maps->translucent),
                                                   maps->translucent.count > 0 ? "#define TRANSLUCENT\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
@@ -85,7 +86,7 @@ static pnb_result add_sample(struct frame *frame, const struct frame_light *ligh
     if (views->count > 0)
         gl_texture_bind(gl, &maps->opaque, 3);
     if (maps->translucent.count > 0)
-        fragment_lists_bind(gl, &maps->translucent);
+        fragment_lists_bind(gl, program, &maps->translucent);
     program_set_int(gl, program, "shadow_map", 3);
     program_set_vec4(gl, program, "emitter_normal", normal);
     program_set_int(gl, program, "uniform_weights", light->parameters[WEIGHTS] > 0.0);

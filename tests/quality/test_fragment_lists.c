@@ -246,9 +246,8 @@ static bool make_lists(struct bench *bench, const struct stage *stage, const str
     struct gl_texture map = {0};
     CHECK_RESULT(gpu_scene_update(bench->renderer->scene, &bench->frame), PNB_OK);
     CHECK_RESULT(pass_shadow_map(&bench->frame, &views, SIDE, TRANSLUCENCY_ANY, &map), PNB_OK);
-    bool good =
-        CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, choice, &map, "test", lists), PNB_OK) &&
-        CHECK_RESULT(pass_fragment_filter(&bench->frame, &views, filter, SIDE, "test", lists), PNB_OK);
+    bool good = CHECK_RESULT(pass_fragment_lists(&bench->frame, &views, choice, &map, "test", lists), PNB_OK) &&
+                CHECK_RESULT(pass_fragment_filter(&bench->frame, &views, filter, SIDE, "test", lists), PNB_OK);
     gl_texture_free(&bench->backend.gl, &map);
     memory_free(bench->frame.casters);
     bench->frame.casters = NULL;
@@ -272,7 +271,8 @@ static void random_stage(struct stage *stage) {
     }
 }
 
-static void levels_match(struct bench *bench, int stack_side, int mode) {
+/* split: fragments need several storage blocks. */
+static void levels_match(struct bench *bench, int stack_side, int mode, bool split) {
     struct stage stage = {0};
     struct fragment_lists lists = {0};
     random_stage(&stage);
@@ -297,7 +297,9 @@ static void levels_match(struct bench *bench, int stack_side, int mode) {
             below = expected;
         }
     }
-    printf("stack from %d, accumulation %d: %u levels as merged here\n", stack_side, mode, lists.level_count);
+    CHECK_INT(gl_buffer_is_split(&bench->backend.gl, &lists.fragments), split);
+    printf("stack from %d, accumulation %d%s: %u levels as merged here\n", stack_side, mode, split ? ", split" : "",
+           lists.level_count);
     free(below.texels);
     fragment_lists_free(&bench->backend.gl, &lists);
     stage_free(&stage);
@@ -458,7 +460,8 @@ static void front_faces_are_left_out(struct bench *bench) {
     const struct fragment_filter filter = {.level_count = 1, .merge_distance = 2, .light_size = 1e-3f};
     struct lists expected, found;
     base_lists(&stage, &expected);
-    if (make_lists(bench, &stage, &(struct fragment_choice){.casters = CASTERS_ALL, .back_faces = true}, &filter, &lists)) {
+    if (make_lists(bench, &stage, &(struct fragment_choice){.casters = CASTERS_ALL, .back_faces = true}, &filter,
+                   &lists)) {
         read_level(&bench->backend.gl, &lists, 0, &found);
         CHECK_INT(differences(&expected, &found), 0);
         free(found.texels);
@@ -473,11 +476,15 @@ int main(void) {
     static struct bench bench;
     if (bench_open(&bench)) {
         for (int mode = 0; mode < 3; mode++) {
-            levels_match(&bench, 0, mode);
-            levels_match(&bench, 16, mode);
+            levels_match(&bench, 0, mode, false);
+            levels_match(&bench, 16, mode, false);
             opacity_is_conserved(&bench, mode);
             near_depths_are_joined(&bench, mode, mode == 0 ? 2 : 0);
         }
+        const int64_t limit = bench.backend.gl.max_buffer_size;
+        bench.backend.gl.max_buffer_size = 44 << 10; /* blocks of 32 KiB */
+        levels_match(&bench, 0, 1, true);
+        bench.backend.gl.max_buffer_size = limit;
         front_faces_are_left_out(&bench);
         one_texel(&bench, 0);
         one_texel(&bench, 16);
