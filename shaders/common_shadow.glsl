@@ -8,6 +8,7 @@ uniform sampler2DArray min_max;    // pyramid of shadow_map: minimum, maximum; l
 struct receiver {
     vec3 position;    // light space of its view, metres
     vec3 normal;      // geometric, light space
+    vec3 shading;     // the shading normal
     vec2 center;      // map coordinate
     vec2 spread;      // half sides, in texels, of the rectangle of receivers it stands for; 0 but in pass_classify.comp
     mat2 kernel;      // the emitter's half axes on the map, in texels per unit of kernel_scale
@@ -38,11 +39,8 @@ vec2 kernel_extent(receiver r, float scale) {
     return (abs(r.kernel[0]) + abs(r.kernel[1])) * scale;
 }
 
-// The emitter's half axes in q. A tilted axis o moves the image of a blocker by o.xy - q o.z to first order.
-mat2 emitter_axes(vec3 position, vec2 q, mat3 to_light) {
-    if (LIGHT_TYPE == SUN)
-        return mat2(light.tan_half_angle);
-    vec3 u, v;
+// The emitter's half axes in light space; not of a SUN.
+void emitter_half_axes(vec3 position, mat3 to_light, out vec3 u, out vec3 v) {
     if (LIGHT_TYPE == AREA) {
         u = to_light * light.half_u.xyz;
         v = to_light * light.half_v.xyz;
@@ -51,6 +49,14 @@ mat2 emitter_axes(vec3 position, vec2 q, mat3 to_light) {
         u = light.emission.w * normalize(vec3(axis.z, 0.0, -axis.x));
         v = cross(axis, u);
     }
+}
+
+// The emitter's half axes in q. A tilted axis o moves the image of a blocker by o.xy - q o.z to first order.
+mat2 emitter_axes(vec3 position, vec2 q, mat3 to_light) {
+    if (LIGHT_TYPE == SUN)
+        return mat2(light.tan_half_angle);
+    vec3 u, v;
+    emitter_half_axes(position, to_light, u, v);
     return mat2(u.xy - q * u.z, v.xy - q * v.z);
 }
 
@@ -79,7 +85,7 @@ receiver receiver_on_map(vec3 position, vec3 normal, float bend, int layer) {
     r.depth_span = view.far_depth - view.near_depth;
     r.texel_size = view.texel;
     r.position = position;
-    r.normal = normal;
+    r.normal = r.shading = normal;
     vec2 q = is_perspective() ? position.xy / position.z : position.xy;
     vec2 scale = view.rect.zw * vec2(r.map_size); // texels per unit of q
     r.center = (q - view.rect.xy) * scale;
@@ -97,6 +103,7 @@ receiver receiver_create(vec3 world_position, vec3 geometric, vec3 shading, int 
     mat3 to_light = mat3(view.from_world);
     receiver r = receiver_on_map((view.from_world * vec4(world_position, 1.0)).xyz, to_light * geometric,
                                  length(geometric - shading), layer);
+    r.shading = to_light * shading;
     vec2 q = is_perspective() ? r.position.xy / r.position.z : r.position.xy;
     vec2 scale = view.rect.zw * vec2(r.map_size);
     mat2 axes = emitter_axes(r.position, q, to_light);

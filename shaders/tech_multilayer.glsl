@@ -3,10 +3,11 @@
 // in the level whose filter is as wide as the kernel of that depth.
 #include "common_min_max.glsl"
 #include "common_fragments.glsl"
+#include "common_horizon.glsl"
 
 uniform ivec4 levels[14];        // first head, texels per side, log2 of a texel's width, border of a stack or -1
 uniform float filter_widths[14]; // of the box with the variance of the level's filter, in texels of the map
-uniform int level_count;
+uniform int level_count, p_lookups;
 uniform int is_opaque;           // 1: no caster lets light through
 
 const int ADD = 0, MULTIPLY = 1, MAXIMUM = 2;
@@ -82,6 +83,18 @@ level_depths depths_of_level(receiver r, float side, int level) {
     return d;
 }
 
+// As coordinates of the map's texels, whose centres are whole numbers.
+vec2 texel_center(ivec4 level, ivec2 texel) {
+    return (vec2(texel) - (level.w < 0 ? -0.5 : float(level.w))) * exp2(float(level.z)) - 0.5;
+}
+
+// Whether a texel lies above the receiver's plane at a depth, if the receiver is so far.
+bool is_above(receiver r, vec2 texel, float depth) {
+    float height = dot(r.slope, texel) + r.level;
+    height = is_perspective() ? height * depth : height + r.normal.z * depth;
+    return depth > r.position.z || height > r.plane;
+}
+
 // Adds the fragments of one texel: nearer to the light than the level's own depth to `lower`, since there this level is
 // the lower of two, farther to `upper`.
 void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, float weight, inout share lower, inout share upper) {
@@ -90,7 +103,7 @@ void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, flo
         return;
     uint head = 2u * uint(l.x + (r.layer * l.y + texel.y) * l.y + texel.x);
     uint i = heads[head], last = i + heads[head + 1u];
-    vec2 center = (vec2(texel) - (l.w < 0 ? -0.5 : float(l.w))) * exp2(float(l.z)) - 0.5;
+    vec2 center = texel_center(l, texel);
     share near = nothing(), far = nothing();
     for (; i < last; i++) {
         float depth = fragment_depth(i);
@@ -114,18 +127,23 @@ void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, flo
     upper.weight += weight * far.weight;
 }
 
-// The four texels around the receiver.
-void look_up_bilinear(receiver r, int level, level_depths d, float side, out share lower, out share upper) {
+// The four texels around a place on the map.
+void look_up_bilinear(receiver r, vec2 center, int level, level_depths d, float side, out share lower,
+                      out share upper) {
     ivec4 l = levels[level];
-    vec2 corner = r.center * exp2(-float(l.z)) + (l.w < 0 ? -0.5 : float(l.w));
+    vec2 corner = center * exp2(-float(l.z)) + (l.w < 0 ? -0.5 : float(l.w));
     vec2 f = fract(corner);
     ivec2 texel = ivec2(floor(corner));
+    vec4 w = vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
+    // The emitter that is seen lies above the receiver's plane, so texels below it tell nothing.
+    vec4 above;
+    for (int i = 0; i < 4; i++)
+        above[i] = is_above(r, texel_center(l, texel + ivec2(i & 1, i >> 1)), d.own) ? w[i] : 0.0;
+    float sum = above.x + above.y + above.z + above.w;
+    w = sum > 0.0 ? above / sum : w;
     lower = upper = nothing();
-    for (int i = 0; i < 4; i++) {
-        ivec2 o = ivec2(i & 1, i >> 1);
-        vec2 w = mix(1.0 - f, f, vec2(o));
-        look_up(r, level, texel + o, d, side, w.x * w.y, lower, upper);
-    }
+    for (int i = 0; i < 4; i++)
+        look_up(r, level, texel + ivec2(i & 1, i >> 1), d, side, w[i], lower, upper);
 }
 
 // The first level whose filter is as wide as the widest kernel of any caster around; -1: nothing can shadow the receiver.
@@ -147,9 +165,8 @@ int last_level(receiver r, float side) {
     return level;
 }
 
-vec3 technique_visibility(receiver r) {
-    float side = kernel_side(r);
-    int last = last_level(r, side);
+// What hides a part of the emitter. aside: where the centre of its kernel lies, in widths of the kernel.
+OPACITY hidden(receiver r, vec2 aside, float side, int last) {
     float facing = abs(is_perspective() ? dot(r.normal, normalize(r.position)) : r.normal.z);
     float texel = r.texel_size * (is_perspective() ? r.position.z : 1.0) * sqrt(max(1.0 - facing * facing, 0.0));
     float plane = r.plane;
@@ -158,12 +175,30 @@ vec3 technique_visibility(receiver r) {
     for (int level = 0; level <= last; level++) {
         // The surfaces of a texel may lie anywhere in its filter, not at its centre, where they are tested.
         r.plane = plane + (level > 0 ? 0.05 * filter_widths[level] * texel : 0.0);
+        // The first level serves kernels from nothing to its filter's width.
+        vec2 center = r.center + (level > 0 ? 1.0 : 0.5) * filter_widths[level] * aside;
         share here, upper;
-        look_up_bilinear(r, level, depths_of_level(r, side, level), side, here, upper);
+        look_up_bilinear(r, center, level, depths_of_level(r, side, level), side, here, upper);
         if (level > 0)
             opacity = combine(opacity, blend(lower, upper));
         lower = here;
     }
-    opacity = combine(opacity, blend(lower, nothing()));
-    return vec3(1.0 - opacity);
+    return combine(opacity, blend(lower, nothing()));
+}
+
+// The filters of one level differ from the emitter in shape and forget which of the casters they blur overlap. So the
+// emitter is cut into p_lookups x p_lookups equal parts, for which narrower filters do.
+vec3 technique_visibility(receiver r) {
+    seen_emitter seen = emitter_seen(r);
+    float parts = float(p_lookups);
+    float side = kernel_side(r) * sqrt(seen.scale.x * seen.scale.y) / parts;
+    int last = last_level(r, side);
+    OPACITY opacity = OPACITY(0.0);
+    vec2 extent = (ELLIPSE == 1 ? 0.886 : 1.0) * seen.scale; // half sides of the square with its area
+    for (int i = 0; i < p_lookups * p_lookups; i++) {
+        vec2 part = vec2(float(i % p_lookups), float(i / p_lookups));
+        vec2 center = seen.center + extent * ((2.0 * part + 1.0) / parts - 1.0);
+        opacity += hidden(r, r.kernel * center / side, side, last) / (parts * parts);
+    }
+    return vec3(clamp(seen.share * (1.0 - opacity), 0.0, 1.0)); // rounding
 }

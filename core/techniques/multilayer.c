@@ -16,7 +16,8 @@ enum {
     BASE_SUBSAMPLING,
     FACES,
     BASE_MERGE_DISTANCE,
-    SUBSAMPLING
+    SUBSAMPLING,
+    LOOKUPS
 };
 
 static const char *const pyramids[] = {"MIP_MAP", "Y_MAP", NULL};
@@ -128,6 +129,15 @@ static const struct parameter parameters[] = {
                      .unit = "",
                      .type = PNB_BOOL,
                      .maximum = 1},
+    [LOOKUPS] = {.name = "lookups",
+                 .label = "Lookups",
+                 .description = "Parts that the light is cut into along each side, each looked up on its own in maps "
+                                "that are less blurred: more are truer where shadows overlap, and slower",
+                 .unit = "per side",
+                 .type = PNB_INT,
+                 .minimum = 1,
+                 .maximum = 4,
+                 .default_value = 2},
     {0}};
 
 static const char *multilayer_defines(const double *values) {
@@ -151,7 +161,7 @@ static pnb_result multilayer_prefilter(struct frame *frame, struct frame_light *
                                            .subsampled_levels = (int)values[BASE_SUBSAMPLING],
                                            .accumulation = (int)values[MERGE_ACCUMULATION],
                                            .merge_distance = (float)values[MERGE_DISTANCE],
-                                           .light_size = light_size(&light->emitter)};
+                                           .light_size = light_size(&light->emitter) / (float)values[LOOKUPS]};
     char what[128];
     snprintf(what, sizeof what, "MULTILAYER, surfaces before light '%.64s'", light->source->name);
     const struct fragment_choice choice = {.casters = CASTERS_ALL,
@@ -159,8 +169,7 @@ static pnb_result multilayer_prefilter(struct frame *frame, struct frame_light *
                                            .joined = (float)values[BASE_MERGE_DISTANCE],
                                            .accumulation = (int)values[MERGE_ACCUMULATION],
                                            .most = (uint32_t)values[DEPTH_LAYERS]};
-    pnb_result result =
-        pass_fragment_lists(frame, &light->views, &choice, &light->shadow_map, what, &light->lists);
+    pnb_result result = pass_fragment_lists(frame, &light->views, &choice, &light->shadow_map, what, &light->lists);
     if (result == PNB_OK)
         result = pass_fragment_filter(frame, &light->views, &filter, light->shadow_map.width, what, &light->lists);
     return result;
