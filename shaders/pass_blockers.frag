@@ -43,13 +43,14 @@ void main() {
     vec2 coordinate = camera_pixel(gl_FragCoord.xy);
     ivec2 pixel = ivec2(coordinate); // in the G-buffer
     float depth = texelFetch(gbuffer_depth, pixel, 0).r;
-    vec3 normal = octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).zw);
+    vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
+    vec3 geometric = octahedral_decode(normals.zw), shading = octahedral_decode(normals.xy);
     vec3 position = camera_position(coordinate, depth);
     int layer = light_layer(position);
     out_blockers = vec4(0.0);
-    if (depth <= 0.0 || layer < 0 || light.casts_shadow == 0.0 || !light_reaches(position, normal))
+    if (depth <= 0.0 || layer < 0 || light.casts_shadow == 0.0 || !light_reaches(position, geometric))
         return;
-    receiver r = receiver_create(position, normal, layer);
+    receiver r = receiver_create(position, geometric, shading, layer);
     float blocker = average_blocker(r);
     if (blocker == 0.0)
         return;
