@@ -12,44 +12,35 @@ uniform sampler2D coarse_visibility;
 
 layout(location = 0) out vec4 out_visibility;
 
-// Visibilities that differ by more have an edge between them.
+// Visibilities that differ by more have an edge between them; surfaces whose visibility hardly differs need not be told
+// apart by their normals, too.
 const float MOST_DIFFERENCE = 0.1;
-// Of the geometric normals of one smooth surface, as a cosine; and how far apart their planes may lie, in pixels.
-const float LEAST_COSINE = 0.98, MOST_DISTANCE = 1.0;
+// How far a neighbour may lie from the pixel's plane, in pixels.
+const float MOST_DISTANCE = 1.0;
 
-struct surface {
-    float depth; // as in the G-buffer
-    vec3 position, geometric;
-};
-
-surface surface_at(ivec2 pixel) {
-    surface s;
-    s.depth = texelFetch(gbuffer_depth, pixel, 0).r;
-    s.geometric = octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).zw);
-    s.position = camera_position(vec2(pixel) + 0.5, s.depth);
-    return s;
-}
-
-bool is_same(surface a, surface b) {
-    return sign(a.depth) == sign(b.depth) && dot(a.geometric, b.geometric) >= LEAST_COSINE &&
-           abs(dot(a.geometric, b.position - a.position)) <= MOST_DISTANCE * pixel_width(a.position);
+vec3 position_at(ivec2 pixel, float depth) {
+    return camera_position(vec2(pixel) + 0.5, depth);
 }
 
 void main() {
     ivec2 place = ivec2(gl_FragCoord.xy) - ivec2(first_pixel), odd = place & 1;
     ivec2 pixel = ivec2(camera_pixel(gl_FragCoord.xy)), size = ivec2(camera.image.xy);
-    surface own = surface_at(pixel);
+    float own_depth = texelFetch(gbuffer_depth, pixel, 0).r;
+    vec3 normal = octahedral_decode(texelFetch(gbuffer_normal, pixel, 0).zw), own = position_at(pixel, own_depth);
+    float most_distance = MOST_DISTANCE * pixel_width(own);
     vec4 least = vec4(1.0), most = vec4(0.0), sum = vec4(0.0);
     bool same = true;
     for (int i = 0; i < 4; i++) {
         ivec2 side = ivec2(i & 1, i >> 1), other = pixel - odd + 2 * side * odd;
+        float depth = texelFetch(gbuffer_depth, other, 0).r;
         vec4 v = texelFetch(coarse_visibility, (place >> 1) + side * odd, 0);
-        same = same && all(lessThan(other, size)) && is_same(own, surface_at(other));
+        same = same && all(lessThan(other, size)) && sign(depth) == sign(own_depth) &&
+               abs(dot(normal, position_at(other, depth) - own)) <= most_distance;
         least = min(least, v);
         most = max(most, v);
         sum += 0.25 * v;
     }
-    if (odd != ivec2(0) && own.depth != 0.0 && (!same || any(greaterThan(most - least, vec4(MOST_DIFFERENCE)))))
+    if (odd != ivec2(0) && own_depth != 0.0 && (!same || any(greaterThan(most - least, vec4(MOST_DIFFERENCE)))))
         discard;
-    out_visibility = own.depth != 0.0 ? sum : vec4(0.0);
+    out_visibility = own_depth != 0.0 ? sum : vec4(0.0);
 }
