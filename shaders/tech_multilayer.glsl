@@ -88,11 +88,23 @@ vec2 texel_center(ivec4 level, ivec2 texel) {
     return (vec2(texel) - (level.w < 0 ? -0.5 : float(level.w))) * exp2(float(level.z)) - 0.5;
 }
 
-// Whether a texel lies above the receiver's plane at a depth, if the receiver is so far.
-bool is_above(receiver r, vec2 texel, float depth) {
+// Height of a texel's centre over the receiver's plane at a depth.
+float height_above(receiver r, vec2 texel, float depth) {
     float height = dot(r.slope, texel) + r.level;
-    height = is_perspective() ? height * depth : height + r.normal.z * depth;
-    return depth > r.position.z || height > r.plane;
+    return (is_perspective() ? height * depth : height + r.normal.z * depth) - r.plane;
+}
+
+// Width of what a texel of a level was merged from, in texels of the map.
+float merged_width(ivec4 level) {
+    return exp2(float(level.z)) * (level.w < 0 ? 1.0 : 2.0 * float(level.w + 1));
+}
+
+// Opacity of the part of a texel that lies above the receiver's plane. A surface that covers only some of the texel is
+// taken for the receiver's own body, below the plane, as far as it has room there.
+OPACITY opacity_above(receiver r, float height, float depth, float width, OPACITY opacity) {
+    float reach = 0.5 * width * (abs(r.slope.x) + abs(r.slope.y)) * (is_perspective() ? depth : 1.0);
+    float above = clamp(0.5 + 0.5 * height / max(reach, 1e-20), 0.5, 1.0);
+    return max(opacity - (1.0 - above), OPACITY(0.0)) / above;
 }
 
 // Adds the fragments of one texel: nearer to the light than the level's own depth to `lower`, since there this level is
@@ -104,22 +116,25 @@ void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, flo
     uint head = 2u * uint(l.x + (r.layer * l.y + texel.y) * l.y + texel.x);
     uint i = heads[head], last = i + heads[head + 1u];
     vec2 center = texel_center(l, texel);
+    float width = merged_width(l);
     share near = nothing(), far = nothing();
     for (; i < last; i++) {
         float depth = fragment_depth(i);
         if (depth >= d.farthest || depth >= r.limit)
             break;
-        if (depth < d.nearest || !is_blocker(r, center, depth))
+        float height = height_above(r, center, depth);
+        if (depth < d.nearest || height <= 0.0)
             continue;
+        OPACITY opacity = level > 0 ? opacity_above(r, height, depth, width, fragment_opacity(i)) : fragment_opacity(i);
         bool is_lower = depth < d.own || level == 0;
-        float width = log2(max(side * kernel_scale(r, depth), 1e-20));
+        float kernel = log2(max(side * kernel_scale(r, depth), 1e-20));
         int low = is_lower ? level : level - 1;
         float from = log2(filter_widths[low]), to = log2(filter_widths[min(low + 1, level_count - 1)]);
-        float t = to > from ? clamp((width - from) / (to - from), 0.0, 1.0) : 0.0;
+        float t = to > from ? clamp((kernel - from) / (to - from), 0.0, 1.0) : 0.0;
         if (is_lower)
-            accumulate(near, fragment_opacity(i), t, 1.0 - t);
+            accumulate(near, opacity, t, 1.0 - t);
         else
-            accumulate(far, fragment_opacity(i), t, t);
+            accumulate(far, opacity, t, t);
     }
     lower.opacity += weight * near.opacity;
     lower.weight += weight * near.weight;
@@ -138,7 +153,7 @@ void look_up_bilinear(receiver r, vec2 center, int level, level_depths d, float 
     // The emitter that is seen lies above the receiver's plane, so texels below it tell nothing.
     vec4 above;
     for (int i = 0; i < 4; i++)
-        above[i] = is_above(r, texel_center(l, texel + ivec2(i & 1, i >> 1)), d.own) ? w[i] : 0.0;
+        above[i] = d.own > r.position.z || height_above(r, texel_center(l, texel + ivec2(i & 1, i >> 1)), d.own) > 0.0 ? w[i] : 0.0;
     float sum = above.x + above.y + above.z + above.w;
     w = sum > 0.0 ? above / sum : w;
     lower = upper = nothing();
