@@ -9,6 +9,7 @@ uniform sampler2D base_color_texture, alpha_texture, emission_texture;
 uniform vec4 texture_use; // x: base_color_texture, y: alpha_texture, z: 1 = alpha is the texture's own, 0 = its grey,
                           // w: emission_texture
 uniform vec4 clearness;   // rgb: share of the light that shines through and is not absorbed; a: 1 = tinted by the texture
+uniform float shadow_threshold; // 0, or the alpha from which on a shadow is opaque, while there is none below
 uniform vec4 uv_rows[2]; // texture coordinates are these rows times (u, v, 1)
 uniform int use_vertex_color;
 uniform int culled_faces; // 0: none, 1: back, 2: front
@@ -39,6 +40,8 @@ const float TRANSMITTANCE_OPAQUE = 1.0 / 1024.0, TRANSMITTANCE_CLEAR = 1023.0 / 
 
 // Share of the light that passes straight through.
 vec3 material_transmittance(vec2 mesh_uv) {
+    if (shadow_threshold > 0.0)
+        return vec3(material_color(mesh_uv, vec3(1.0)).a < shadow_threshold ? 1.0 : 0.0);
     vec3 tint = vec3(1.0);
     if (clearness.a != 0.0)
         tint = min(texture(base_color_texture, material_uv(mesh_uv)).rgb, vec3(1.0));

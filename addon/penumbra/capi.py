@@ -6,7 +6,7 @@ import os
 from ctypes import (POINTER, byref, c_char, c_char_p, c_double, c_float, c_int, c_int32, c_uint32, c_uint64,
                     c_void_p, sizeof)
 
-API_VERSION = 5
+API_VERSION = 6
 
 OK, TIMEOUT = 0, 1
 INVALID_ARGUMENT, NO_BACKEND, UNSUPPORTED, OUT_OF_MEMORY, CANCELLED, CONTEXT_LOST = -1, -2, -3, -4, -5, -6
@@ -86,7 +86,7 @@ class Material(_Struct):
     _fields_ = [("struct_size", c_uint32), ("base_color", c_float * 3), ("transparency", c_float),
                 ("flags", c_uint32), ("base_color_texture", c_void_p), ("alpha_texture", c_void_p),
                 ("emission", c_float * 3), ("absorption", c_float * 3), ("emission_texture", c_void_p),
-                ("uv_matrix", c_float * 6)]
+                ("uv_matrix", c_float * 6), ("shadow_threshold", c_float)]
 
 
 class Instance(_Struct):

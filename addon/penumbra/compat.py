@@ -125,6 +125,12 @@ def casts_no_shadow(material):
     return getattr(material, 'shadow_method', 'OPAQUE') == 'NONE'
 
 
+def shadow_threshold(material):
+    """The alpha from which on EEVEE's shadow mode CLIP of Blender 3.4 takes a surface for opaque; 0: another mode."""
+    clips = getattr(material, 'shadow_method', 'OPAQUE') == 'CLIP'
+    return min(max(material.alpha_threshold, 1e-6), 1.0) if clips else 0.0
+
+
 def casts_opaque_shadow(material):
     """Transparency can be left out of shadows: a setting of Cycles, since 4.2 of the material."""
     return not all(getattr(owner, 'use_transparent_shadow', True)

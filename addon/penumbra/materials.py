@@ -44,6 +44,7 @@ def fill_material(target, material, texture, warnings):
     target.base_color[:] = surface.color
     target.transparency = 1.0 - surface.alpha
     target.absorption[:] = [1.0 - min(max(channel, 0.0), 1.0) for channel in surface.clear]
+    target.shadow_threshold = compat.shadow_threshold(material)
     target.emission[:] = surface.emission
     if surface.color_image:
         target.base_color_texture = texture(surface.color_image.image, textures.COLOR, surface.color_image.flags)

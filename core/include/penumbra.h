@@ -29,7 +29,7 @@
 
 #define PNB_VERSION "0.1.0"
 /* Raised by every change of this header that is not a pure addition. */
-#define PNB_API_VERSION 5u
+#define PNB_API_VERSION 6u
 
 #ifdef PNB_BUILD
 #define PNB_API __attribute__((visibility("default")))
@@ -244,6 +244,7 @@ typedef struct pnb_material {
                                             * through; 0: clear. What passes is transparency * (1 - absorption) */
     const pnb_texture *emission_texture;   /* NULL: none */
     float uv_matrix[6]; /* texture coordinates are these two rows times (u, v, 1); all zero: (u, v) */
+    float shadow_threshold; /* 0..1. Above 0: the shadow is opaque where alpha is at least this, elsewhere there is none */
 } pnb_material;
 
 enum pnb_instance_flags {

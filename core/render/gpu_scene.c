@@ -21,6 +21,7 @@ struct gpu_material {
     vec4 base_color; /* rgb, alpha */
     vec4 emission;   /* rgb, 1 = holdout */
     vec4 clearness;  /* rgb, 1 = tinted by base_color_texture */
+    float shadow_threshold;
     const struct gpu_image *base_color_texture, *alpha_texture, *emission_texture;
     bool alpha_is_grey, transparent, translucent, textured;
     vec4 uv_rows[2];
@@ -102,6 +103,7 @@ static pnb_result load_materials(struct gpu_scene *scene, const struct scene *fr
         material->emission[3] = source->flags & PNB_MATERIAL_HOLDOUT ? 1.0f : 0.0f;
         if (!(source->flags & PNB_MATERIAL_OPAQUE_SHADOW))
             glm_vec4((float *)source->clearness, material_is_tinted(source) ? 1.0f : 0.0f, material->clearness);
+        material->shadow_threshold = source->shadow_threshold;
         material->flags = source->flags;
         pnb_result result = PNB_OK;
         if (source->base_color_texture)
@@ -294,6 +296,7 @@ static void bind_material(const struct gl *gl, GLuint program, const struct gpu_
         return;
     program_set_int(gl, program, "culled_faces", (int)culled);
     program_set_vec4(gl, program, "clearness", material->clearness);
+    program_set_float(gl, program, "shadow_threshold", material->shadow_threshold);
     const vec4 use = {material->base_color_texture ? 1.0f : 0.0f, material->alpha_texture ? 1.0f : 0.0f,
                       material->alpha_is_grey ? 0.0f : 1.0f, material->emission_texture ? 1.0f : 0.0f};
     program_set_vec4(gl, program, "texture_use", use);

@@ -13,7 +13,7 @@
 #include "bytes.h"
 #include "scene.h"
 
-#define CAPTURE_VERSION     5u
+#define CAPTURE_VERSION     6u
 #define CAPTURE_HEADER_SIZE 32u
 #define CAPTURE_KEY_OFFSET  16u /* of the content key within the header */
 

@@ -20,6 +20,7 @@ FIELD_LIST(instance_fields);
 static const struct field material_fields_table[] = {
     FIELD(pnb_material, base_color), FIELD(pnb_material, transparency), FIELD(pnb_material, flags),
     FIELD(pnb_material, emission),   FIELD(pnb_material, absorption),   FIELD(pnb_material, uv_matrix),
+    FIELD(pnb_material, shadow_threshold),
 };
 FIELD_LIST(material_fields);
 

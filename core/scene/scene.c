@@ -33,6 +33,16 @@ static bool complement_resolve(float share, float *to) {
     return usable;
 }
 
+/* A threshold that is the same everywhere decides on the shadow as a whole. Gives whether it was usable. */
+static bool threshold_resolve(const pnb_material *from, struct scene_material *to) {
+    const float threshold = from->shadow_threshold;
+    if (threshold > 0 && threshold <= 1 && from->alpha_texture)
+        to->shadow_threshold = threshold;
+    else if (threshold > 0 && threshold <= 1)
+        to->flags |= to->alpha >= threshold ? PNB_MATERIAL_OPAQUE_SHADOW : PNB_MATERIAL_NO_SHADOW;
+    return threshold >= 0 && threshold <= 1;
+}
+
 static void material_resolve(const pnb_material *from, uint32_t index, struct messages *messages,
                              struct scene_material *to) {
     *to = default_material;
@@ -43,6 +53,7 @@ static void material_resolve(const pnb_material *from, uint32_t index, struct me
     for (int i = 0; i < 3; i++) {
         good = complement_resolve(from->absorption[i], &to->clearness[i]) && good;
     }
+    good = threshold_resolve(from, to) && good;
     if (!good) {
         messages_add(messages, "material %" PRIu32 ": its colour or transparency is out of range and was clamped",
                      index);
@@ -70,7 +81,9 @@ static void note_traits(const struct scene_material *material, struct scene *sce
     scene->emissive = scene->emissive || emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
     if (material_is_translucent(material)) {
         scene->translucent = true;
-        scene->colored = scene->colored || material_is_tinted(material) || clear[0] != clear[1] || clear[1] != clear[2];
+        scene->colored =
+            scene->colored || (material->shadow_threshold == 0 &&
+                               (material_is_tinted(material) || clear[0] != clear[1] || clear[1] != clear[2]));
     }
 }
 

@@ -64,6 +64,7 @@ struct scene_material {
     float base_color[3], alpha, emission[3];
     float clearness[3];               /* 1 - absorption */
     float uv_matrix[6];
+    float shadow_threshold;           /* 0: none; else there is an alpha_texture */
     uint32_t flags;
     pnb_texture *base_color_texture, *alpha_texture, *emission_texture; /* retained, or NULL */
 };
@@ -76,7 +77,8 @@ static inline bool material_is_tinted(const struct scene_material *material) {
 /* Whether it casts a shadow that some light shines through. */
 static inline bool material_is_translucent(const struct scene_material *material) {
     const float *clear = material->clearness;
-    return (material->alpha < 1 || material->alpha_texture) && (clear[0] > 0 || clear[1] > 0 || clear[2] > 0) &&
+    return (material->alpha < 1 || material->alpha_texture) &&
+           (clear[0] > 0 || clear[1] > 0 || clear[2] > 0 || material->shadow_threshold > 0) &&
            !(material->flags & (PNB_MATERIAL_NO_SHADOW | PNB_MATERIAL_OPAQUE_SHADOW));
 }
 

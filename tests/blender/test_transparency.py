@@ -13,6 +13,8 @@ from penumbra import compat
 SIDE = 48
 # Root of the mean squared error of a channel's visibility.
 TOLERANCE = 0.05
+# ... of MULTILAYER against REFERENCE.
+REFERENCE_TOLERANCE = 0.04
 TECHNIQUES = ('REFERENCE', 'MULTILAYER')
 
 
@@ -86,9 +88,10 @@ class Transparency(CyclesTest):
         for ob in sheets:
             ob.hide_render = False
         self.scene.render.engine = 'PENUMBRA'
+        pictures = {}
         for technique in TECHNIQUES:
             self.scene.penumbra.technique = technique
-            picture = self.render(technique)
+            picture = pictures[technique] = self.render(technique)
             for channel in 'RGB':
                 name = 'ViewLayer.Combined.' + channel
                 ours = picture['ViewLayer.Shadow.' + channel][2]
@@ -98,6 +101,11 @@ class Transparency(CyclesTest):
                       "Cycles' darkest", round(min(s / max(u, 1e-9) for s, u in zip(shadowed[name][2], lit[name][2])), 3))
                 self.assertLess(error, tolerance)
                 self.assertLess(min(ours), 0.9)
+        for channel in 'RGB':
+            truth, ours = (pictures[technique]['ViewLayer.Shadow.' + channel][2] for technique in TECHNIQUES)
+            error = math.sqrt(sum((a - b) ** 2 for a, b in zip(truth, ours)) / len(ours))
+            print(self.id(), "MULTILAYER against REFERENCE", channel, "error", round(error, 4))
+            self.assertLess(error, REFERENCE_TOLERANCE)
 
     def test_colored_glass(self):
         for i, color in enumerate(((0.9, 0.15, 0.1), (0.2, 0.8, 0.2), (0.15, 0.3, 0.9))):
@@ -182,3 +190,15 @@ class Export(CyclesTest):
         self.assertFalse(compat.casts_no_shadow(material))
         material.shadow_method = 'NONE'
         self.assertTrue(compat.casts_no_shadow(material))
+
+    def test_clip_mode(self):
+        """What lies below the threshold casts no shadow, the rest an opaque one; Cycles knows no such mode."""
+        if 'shadow_method' not in bpy.types.Material.bl_rna.properties:
+            self.skipTest("only Blender 3.4 has the modes")
+        from penumbra import capi, materials
+        material = white_material()
+        for mode, expected in (('CLIP', 0.3), ('HASHED', 0.0)):
+            material.shadow_method, material.alpha_threshold = mode, 0.3
+            target = capi.Material()
+            materials.fill_material(target, material, lambda *_: None, [])
+            self.assertAlmostEqual(target.shadow_threshold, expected)

@@ -220,6 +220,9 @@ static void bad_materials(void) {
     ROW(PNB_OK, "", material->transparency = 0.5f; room.settings.samples = 3);
     ROW(PNB_OK, "material 1", material->transparency = 1; material->absorption[1] = NAN);
     ROW(PNB_OK, "material 1", material->transparency = 1; material->absorption[2] = 2);
+    ROW(PNB_OK, "material 1", material->shadow_threshold = NAN);
+    ROW(PNB_OK, "material 1", material->shadow_threshold = 2);
+    ROW(PNB_OK, "", material->shadow_threshold = 0.5f; material->transparency = 0.5f);
     ROW(PNB_OK, "", material->transparency = 1; material->absorption[0] = 1; room.settings.samples = 2);
     ROW(PNB_OK, "", material->flags = PNB_MATERIAL_TINTED);
     ROW(PNB_OK, "", material->flags = PNB_MATERIAL_NO_SHADOW | PNB_MATERIAL_TINTED);

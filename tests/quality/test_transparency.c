@@ -117,6 +117,29 @@ static void flags(void) {
     stage_destroy(&stage);
 }
 
+/* Alpha of 0.6, by a texture or not, above and below a threshold. */
+static void threshold(void) {
+    static const float blue[3] = {0.25f, 0.5f, 1}, alpha[4] = {1, 1, 1, 0.6f};
+    static const char *const techniques[] = {"REFERENCE", "PCSS", "MULTILAYER"};
+    for (int i = 0; i < 4; i++) {
+        const bool textured = i & 1, above = i & 2;
+        struct stage *stage = stage_create();
+        pnb_texture_desc desc = PNB_INIT(pnb_texture_desc);
+        desc.width = desc.height = 1;
+        desc.channels = 4;
+        desc.pixels.data = alpha;
+        pnb_material *material = add_pane(stage, MATERIAL_BLUE, 1, textured ? 0 : 0.4f, blue);
+        if (textured && CHECK_RESULT(pnb_texture_create(&desc, &stage->texture), PNB_OK))
+            material->alpha_texture = stage->texture;
+        material->shadow_threshold = above ? 0.55f : 0.65f;
+        const double expected = above ? 0 : 1;
+        for (int t = 0; t < 3; t++)
+            check(above ? "alpha above the threshold" : "alpha below the threshold", stage, techniques[t], 1,
+                  (const double[3]){expected, expected, expected}, EXACT, EXACT);
+        stage_destroy(&stage);
+    }
+}
+
 static void one_depth(void) {
     static const float white[3] = {1, 1, 1}, blue[3] = {0.25f, 0.5f, 1};
     for (int i = 0; i < 2; i++) {
@@ -192,6 +215,7 @@ int main(void) {
     multilayer_multiplies();
     exact();
     flags();
+    threshold();
     one_depth();
     return quality_close();
 }

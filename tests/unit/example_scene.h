@@ -92,6 +92,7 @@ static inline void example_materials(struct example *example) {
         material->alpha_texture = i == 2 ? example->mask : i == 1 ? example->colors : NULL;
         material->flags = (uint32_t)i;
         material->emission[i] = 0.25f * (float)i;
+        material->shadow_threshold = 0.25f * (float)i;
         material->emission_texture = i == 1 ? example->colors : NULL;
     }
     static const uint32_t slots[4] = {0, 1, 2, 1};

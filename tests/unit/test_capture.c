@@ -286,7 +286,7 @@ static void foreign_files_are_refused(void **state) {
     longer[4] = CAPTURE_VERSION + 1;
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
-    assert_error("has format version 6");
+    assert_error("has format version 7");
     memcpy(longer, "BLENDER-v304RENDH", 17);
     store(fixture->path, longer, fixture->file.size);
     assert_int_equal(pnb_capture_read(fixture->path, &capture), PNB_ERROR_FILE);
