@@ -5,7 +5,7 @@ from array import array
 from ctypes import byref, c_uint32
 from typing import NamedTuple
 
-from . import camera, capi, compat, lights, materials, nodes, textures
+from . import camera, capi, compat, lights, materials, nodes, settings, textures
 from .geometry import MeshStore
 from .links import LightLinks
 from .mesh import NO_NEEDS
@@ -76,10 +76,11 @@ class SceneExport:
     def set_camera(self, ob, matrix, shift_x, width, height, aspect):
         camera.fill_camera(self.scene.camera, ob, matrix, shift_x, width, height, aspect, self.warnings)
 
-    def use_own_techniques(self, used):
-        """Whether lights have the techniques of their own, or all the settings'."""
+    def use_own_techniques(self, used, share=1.0):
+        """Whether lights have the techniques of their own, or all the settings'; share: of the size of their maps."""
         for target, light in zip(self.scene.lights[:self.scene.light_count], self._lights):
             target.technique = light.technique if used else None
+            target.shadow_map_size = light.shadow_map_size and settings.map_size(light.shadow_map_size, share)
 
     # ---- Instances ----
 

@@ -6,6 +6,10 @@ from ctypes import c_float
 from . import capi, command_line, passes, props
 
 
+# Texels per side that quick pictures have at least.
+_LEAST_MAP = 128
+
+
 def backend():
     return command_line.options().get('backend') or props.backend()
 
@@ -25,10 +29,16 @@ def for_still(depsgraph, width, height):
     return settings
 
 
-def for_viewport(scene, width, height, crop, samples, is_reference, image):
-    """`image`: the one pass wanted."""
+def map_size(size, share):
+    """Of the maps of a picture that has this share of its width."""
+    return min(size, max(_LEAST_MAP, int(size * share)))
+
+
+def for_viewport(scene, width, height, crop, samples, is_reference, image, share):
+    """`image`: the one pass wanted; `share`: of the size of shadow maps."""
     settings = _common(scene, 'REFERENCE' if is_reference else None, width, height)
     settings.samples = samples
+    settings.shadow_map_size = map_size(settings.shadow_map_size, share)
     settings.passes = image
     settings.flags |= capi.SETTINGS_PROGRESSIVE
     settings.crop[:] = crop

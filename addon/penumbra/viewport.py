@@ -3,6 +3,7 @@
 library's thread and draws the newest picture: first a quick one, then all pixels and more samples, then the
 reference."""
 
+import collections
 import time
 import traceback
 import weakref
@@ -16,12 +17,18 @@ from . import capi, command_line, device, draw, export, geometry, jobs, pictures
 _POLL = 0.005
 # Seconds without input before more samples are worth starting.
 _REST = 0.12
-# First frames of at most so many milliseconds are waited for: the picture then never trails behind the view.
-_WAIT_MS = 25
+# So many milliseconds first pictures are waited for, by all viewports together, between two turns of Blender's event loop.
+# Without a wait Blender would show the old picture once more, at the cost of the new one where the CPU draws both, and
+# show the new one in a second turn.
+_WAIT_MS = 150
 # Of the region's width and height, for the first picture.
 _SCALES = (1.0, 0.7, 0.5, 0.35, 0.25)
 # First pictures for which a scale that was too slow is not tried again.
 _MEMORY = 40
+# First pictures after which a wait that was too short is tried again.
+_RETRY = 10
+# Of the user's latency, what is left for our part however long Blender takes to show a picture.
+_LEAST_SHARE = 0.5
 
 # What a run makes: a quick picture, all samples, all samples by the reference.
 _FIRST, _SAMPLES, _REFERENCE = range(3)
@@ -91,6 +98,7 @@ class Viewport:
         elif self._picture:
             self._picture.draw(context.region)
         self._show_status()
+        _turn.drawn = time.monotonic()
 
     def _guard(self, action, *arguments):
         """An exception that leaves a callback is printed at every redraw and seen by nobody."""
@@ -164,9 +172,16 @@ class Viewport:
             return
         kind, self._next = self._next[0], None
         self._run = Run(kind, self._wanted, self._exported, scene, self._speed)
-        if kind == _FIRST and self._speed.expected(self._run.share) <= _WAIT_MS:
-            self._run.job.wait(_WAIT_MS)
+        if kind == _FIRST:
+            self._wait_for_first()
         _wake()
+
+    def _wait_for_first(self):
+        run, left = self._run, _turn.left_ms()
+        if left > 0 and self._speed.is_worth_waiting(run.share):
+            run.job.wait(left)
+            _turn.waited_ms += run.elapsed_ms()
+            self._speed.note_wait(run.share, run.job.is_done())
 
     def _take_picture(self):
         """The newest picture of the run, if there is a newer one; then what follows."""
@@ -252,12 +267,12 @@ class Run:
         width, height = (max(1, int(size * self.scale + 0.5)) for size in wanted.view[:2])
         values = settings.for_viewport(scene, width, height, view.crop(wanted.view, width, height),
                                        1 if kind == _FIRST else samples, kind == _REFERENCE,
-                                       wanted.image.image_pass)
+                                       wanted.image.image_pass, self.share)
         self.technique = values.technique.decode()
         self.size = width, height
         self.crop = tuple(values.crop)
         view.fill_camera(exported.scene.camera, wanted.view)
-        exported.use_own_techniques(kind != _REFERENCE)
+        exported.use_own_techniques(kind != _REFERENCE, self.share)
         self._started = time.monotonic()
         self._exported, self._values = exported, values
         self._context = device.context(settings.backend())
@@ -296,6 +311,7 @@ class Speed:
         self._last = None       # scale
         self._count = 0
         self._known = set()     # techniques whose shaders are compiled
+        self._in_vain = {}      # scale: when a wait for a picture was too short
 
     def add(self, technique, scale, ms):
         if technique not in self._known:
@@ -315,7 +331,39 @@ class Speed:
     def choose(self, latency_ms):
         if self._last is None:
             return _SCALES[2]
-        return next((scale for scale in _SCALES if self.expected(scale) <= latency_ms), _SCALES[-1])
+        left = max(latency_ms - _turn.display_ms(), _LEAST_SHARE * latency_ms)
+        return next((scale for scale in _SCALES if self.expected(scale) <= left), _SCALES[-1])
+
+    def is_worth_waiting(self, scale):
+        return self._count - self._in_vain.get(scale, -_RETRY) >= _RETRY
+
+    def note_wait(self, scale, is_done):
+        if not is_done:
+            self._in_vain[scale] = self._count
+
+
+class Turn:
+    """One turn of Blender's event loop: what viewports have waited in it, and how long Blender takes to show what they
+    drew."""
+
+    def __init__(self):
+        self.waited_ms = 0.0
+        self.drawn = None       # when a viewport ended drawing
+        self._display = collections.deque(maxlen=5)
+
+    def left_ms(self):
+        return int(_WAIT_MS - self.waited_ms)
+
+    def display_ms(self):
+        return sorted(self._display)[len(self._display) // 2] if self._display else 0.0
+
+    def begin(self):
+        if self.drawn is not None:
+            self._display.append((time.monotonic() - self.drawn) * 1000.0)
+        self.waited_ms, self.drawn = 0.0, None
+
+
+_turn = Turn()
 
 
 def _visibility(space):
@@ -329,6 +377,7 @@ def _wake():
 
 
 def _tick():
+    _turn.begin()
     busy = [viewport.poll() for viewport in list(_viewports)]
     return _POLL if jobs.sweep() or any(busy) else None
 

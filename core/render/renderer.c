@@ -331,6 +331,7 @@ pnb_result renderer_run(struct renderer *renderer, struct pnb_job *job) {
     frame->width = (int)job->settings.crop[2];
     frame->height = (int)job->settings.crop[3];
     glm_vec3_copy((float *)&job->scene->camera.matrix[12], frame->origin);
+    renderer->timer.interactive = job->settings.flags & PNB_SETTINGS_PROGRESSIVE ? job : NULL;
     pnb_result result = draw_frame(frame);
     for (uint32_t i = 0; i < MAX_LIGHTS; i++)
         free_shadow_maps(frame, &frame->lights[i]);

@@ -14,11 +14,27 @@ from math import cos, pi, sin
 
 import addon_utils
 import bpy
+import gpu
 from mathutils import Quaternion
 
 BALLS, RINGS = 10, 71            # each ball has 2 * RINGS * (RINGS - 1) triangles
 MOVES, ORBIT_SECONDS, QUIET = 15, 6.0, 0.7
-ENGINES = {'PENUMBRA': 'PENUMBRA', 'EEVEE': None, 'CYCLES': 'CYCLES'}
+# TARGET: with first pictures as small as the user's latency asks for; PENUMBRA: of all pixels.
+ENGINES = {'PENUMBRA': 'PENUMBRA', 'TARGET': 'PENUMBRA', 'EEVEE': None, 'CYCLES': 'CYCLES', 'NOTHING': 'LATENCY_NOTHING'}
+
+
+class Nothing(bpy.types.RenderEngine):
+    """One colour, another at every drawing: what Blender itself takes to show what an engine drew."""
+    bl_idname = 'LATENCY_NOTHING'
+    bl_label = "Nothing"
+    count = 0
+
+    def view_update(self, _context, _depsgraph):
+        pass
+
+    def view_draw(self, _context, _depsgraph):
+        Nothing.count += 1
+        gpu.state.active_framebuffer_get().clear(color=(0.1 * (Nothing.count % 10), 0.5, 0.5, 1.0))
 
 
 class Display(threading.Thread):
@@ -82,12 +98,12 @@ def make_scene():
     return add(light, (0, 0, 5))
 
 
-def show(engine, scale):
+def show(engine, latency):
     scene = bpy.context.window_manager.windows[0].scene
     scene.render.engine = engine
     if engine == 'PENUMBRA':
         scene.penumbra.technique = 'PCSS'
-        scene.penumbra.viewport_latency = 2000 if scale >= 1.0 else 10
+        scene.penumbra.viewport_latency = latency
         scene.penumbra.viewport_samples = 16
     elif hasattr(scene, 'eevee'):
         scene.eevee.taa_samples = 16
@@ -158,11 +174,11 @@ def measure_orbit(display, region_3d, blocked):
 
 def measure(options, display, blocked):
     lamp = make_scene()
-    print(f"{2 * RINGS * (RINGS - 1) * BALLS + 2} triangles, scale {options.scale}")
-    print(f"{'engine':<10}{'lamp to pixels, ms: median':>28}{'worst':>8}{'orbit, 1/s':>12}{'longest block, ms':>20}")
+    print(f"{2 * RINGS * (RINGS - 1) * BALLS + 2} triangles, TARGET has a latency of {options.latency} ms")
+    print(f"{'engine':<10}{'lamp to pixels, ms: median':>28}{'worst':>8}{'orbit, 1/s':>12}{'longest block, ms':>20}  scale")
     for name in options.engines:
         identifier = ENGINES[name] or eevee()
-        region_3d = show(identifier, options.scale)
+        region_3d = show(identifier, options.latency if name == 'TARGET' else 2000)
         with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
             bpy.context.view_layer.update()
         yield from wait(2.0)
@@ -170,7 +186,15 @@ def measure(options, display, blocked):
         times, longest = yield from measure_moves(display, lamp, blocked)
         rate, block = yield from measure_orbit(display, region_3d, blocked)
         print(f"{name:<10}{1000 * statistics.median(times):>28.0f}{1000 * max(times):>8.0f}{rate:>12.1f}"
-              f"{1000 * max(block, *longest):>20.0f}", flush=True)
+              f"{1000 * max(block, *longest):>20.0f}  {scale(identifier)}", flush=True)
+
+
+def scale(engine):
+    """Of the last first picture's width and height."""
+    if engine != 'PENUMBRA':
+        return ''
+    from penumbra import viewport
+    return max((shown._speed._last or 0.0 for shown in viewport._viewports), default='')
 
 
 def eevee():
@@ -179,11 +203,12 @@ def eevee():
 
 def main():
     parser = argparse.ArgumentParser(prog='run.sh')
-    parser.add_argument('--scale', type=float, default=1.0)
+    parser.add_argument('--latency', type=int, default=150)
     parser.add_argument('engines', nargs='*')
     options = parser.parse_args(sys.argv[sys.argv.index('--') + 1:])
-    options.engines = options.engines or ['PENUMBRA', 'EEVEE']
+    options.engines = options.engines or ['PENUMBRA', 'TARGET', 'EEVEE', 'NOTHING']
     addon_utils.enable('penumbra')
+    bpy.utils.register_class(Nothing)
     bpy.context.preferences.view.show_splash = False
     display, blocked = Display(), Blocked()
     steps = measure(options, display, blocked)

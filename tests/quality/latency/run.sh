@@ -4,12 +4,15 @@ set -eu
 
 help() {
     cat <<EOF
-Usage: tests/quality/latency/run.sh [BUILD_DIR] [--scale SCALE] [ENGINE...]
-How fast a viewport of 960 x 540 follows input: 100,000 triangles, an area light, PCSS, on a display of its own. Per engine
-(default: PENUMBRA and EEVEE): the time from a moved lamp to the changed display, pictures per second while the view
-orbits, and the longest time that Blender's event loop did not run. Times are only comparable within one run.
+Usage: tests/quality/latency/run.sh [BUILD_DIR] [--latency MS] [ENGINE...]
+How fast a viewport of 960 x 540 follows input: 100,000 triangles, an area light, PCSS, on a display of its own. Per engine the
+time from a moved lamp to the changed display, pictures per second while the view orbits, the longest time that Blender's
+event loop did not run, and what share of the region's width the first picture has. Times are only comparable within one run.
 
-  --scale SCALE   largest share of the viewport's width and height the first picture has (default 1)
+Engines (default: all but CYCLES): PENUMBRA with first pictures of all pixels; TARGET, as small as the latency asks for; EEVEE;
+CYCLES; NOTHING, which draws one colour: what Blender itself takes.
+
+  --latency MS   Performance > Latency of TARGET (default 150)
 EOF
 }
 
