@@ -80,6 +80,20 @@ def add_world(color):
     return world
 
 
+def eevee():
+    """Identifier of EEVEE, which had another one while there were two."""
+    return 'BLENDER_EEVEE_NEXT' if (4, 2) <= bpy.app.version < (5, 0) else 'BLENDER_EEVEE'
+
+
+def turn_off_eevee_shadows(scene):
+    """EEVEE's own, but not ours: in 3.4 the lamps' shadow maps begin behind everything."""
+    if hasattr(scene.eevee, 'use_shadows'):
+        scene.eevee.use_shadows = False
+        return
+    for light in bpy.data.lights:
+        light.shadow_buffer_clip_start = 1000.0
+
+
 def read_byte_image(path):
     """(width, height, RGBA floats as stored, rows bottom-up)."""
     image = bpy.data.images.load(path, check_existing=False)

@@ -4,7 +4,7 @@
 import bpy
 
 import display
-from harness import output
+from harness import eevee, output, turn_off_eevee_shadows
 from window import ViewportTest, psnr
 
 
@@ -58,6 +58,11 @@ class Overlay(ViewportTest):
     def test_workbench(self):
         self.space().shading.light = 'FLAT'
         yield from self.check('BLENDER_WORKBENCH', 'SOLID', "overlay-workbench")
+
+    def test_eevee(self):
+        turn_off_eevee_shadows(self.scene)
+        self.scene.eevee.taa_samples = 1
+        yield from self.check(eevee(), 'RENDERED', "overlay-eevee")
 
     def test_follows_edits(self):
         self.space().shading.type = 'SOLID'

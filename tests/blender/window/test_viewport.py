@@ -71,18 +71,32 @@ class Edits(ViewportTest):
 
     def test_undo(self):
         self.push_undo("begin")
-        first = yield from self.shown("undo-first")
+        yield from self.check("undo-first")
+        first = self.before
         bpy.data.objects["Cube"].location.x += 1.0
         bpy.data.objects["Cube"].data.vertices[7].co.z += 1.0
         self.push_undo("edit")
-        second = yield from self.shown("undo-second")
-        self.assertFalse(first == second)
+        yield from self.check("undo-second")
+        second = self.before
         with self.in_viewport():
             bpy.ops.ed.undo()
-        self.assertTrue(first == (yield from self.shown("undone")))
+        yield from self.check("undone")
+        self.assertTrue(first == self.before)
         with self.in_viewport():
             bpy.ops.ed.redo()
-        self.assertTrue(second == (yield from self.shown("redone")))
+        yield from self.check("redone")
+        self.assertTrue(second == self.before)
+
+    def test_shading_switch(self):
+        """What happened while the viewport was drawn by another engine."""
+        yield from self.check("rendered")
+        for number, shading in enumerate(('SOLID', 'WIREFRAME', 'MATERIAL')):
+            self.space().shading.type = shading
+            yield from self.settle()
+            bpy.data.objects["Cube"].location.x += 0.3
+            bpy.data.lights["Key"].size += 0.2
+            self.space().shading.type = 'RENDERED'
+            yield from self.check(f"after {shading}")
 
     def test_frame_change(self):
         cube = bpy.data.objects["Cube"]

@@ -8,7 +8,7 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 from harness import ADDON, add_camera, add_light, add_world
 from window import ViewportTest, psnr, read_picture
 
-from penumbra import capi, view, viewport
+from penumbra import capi, draw, view, viewport
 
 POINTS = [(0.0, 0.0, 0.0), (1.0, 0.5, 0.2), (-0.7, 1.1, 0.9), (0.3, -1.2, -0.5)]
 
@@ -156,13 +156,60 @@ class Regions(ViewportTest):
         yield from self.settle()
         self.assertFalse(bpy.app.timers.is_registered(viewport._tick))
 
+    def test_separate_viewports(self):
+        """Two areas with views of their own follow one scene."""
+        with self.in_viewport():
+            bpy.ops.screen.screen_full_area(use_hide_panels=True)
+        yield 'draw'
+        areas = bpy.context.window_manager.windows[0].screen.areas
+        other = max((area for area in areas if area.type != 'VIEW_3D'), key=lambda area: area.width * area.height)
+        self.addCleanup(setattr, other, 'type', other.type)
+        other.type = 'VIEW_3D'
+        spaces = self.space(), other.spaces.active
+        for space in spaces:
+            space.overlay.show_overlays = space.show_gizmo = False
+            space.shading.type = 'RENDERED'
+        spaces[1].region_3d.view_rotation = 0.9, 0.4, 0.0, 0.1
+        spaces[1].region_3d.view_distance = 6.0
+        before = yield from self.both("before", other)
+        bpy.data.objects["Cube"].location.x += 0.5
+        after = yield from self.both("after", other)
+        for space in spaces:
+            space.shading.type = 'SOLID'
+        yield from self.settle()
+        for space in spaces:
+            space.shading.type = 'RENDERED'
+        fresh = yield from self.both("fresh", other)
+        self.assertEqual(len({picture.rgb for picture in before + after}), 4)
+        self.assertTrue(after == fresh)
+
+    def both(self, name, other):
+        yield from self.settle()
+        region = next(region for region in other.regions if region.type == 'WINDOW')
+        return [self.screenshot("separate-" + name), self.screenshot("separate-other-" + name, region)]
+
+    def record(self, owner, name, argument):
+        """List of an argument of every call from now on."""
+        calls, original = [], getattr(owner, name)
+
+        def recorded(*arguments):
+            calls.append(arguments[argument])
+            return original(*arguments)
+        setattr(owner, name, recorded)
+        self.addCleanup(setattr, owner, name, original)
+        return calls
+
     def test_error(self):
         """It is told in the viewport, and gone with its cause."""
         good = yield from self.shown("good")
         preferences = bpy.context.preferences.addons[ADDON].preferences
         self.addCleanup(setattr, preferences, 'backend', preferences.backend)
         before, preferences.backend = preferences.backend, 'nosuch'
+        said, status = self.record(draw, 'draw_message', 1), self.record(viewport.EngineHost, 'show_status', 1)
         bad = yield from self.shown("error")
         self.assertFalse(bad == good)
+        for text in (said[-1], status[-1]):     # what it is, what is wrong, and what would be right
+            for words in ("Penumbra cannot draw this viewport", "nosuch", "egl", "osmesa"):
+                self.assertIn(words, text)
         preferences.backend = before
         self.assertTrue(good == (yield from self.shown("good again")))
