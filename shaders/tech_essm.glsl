@@ -165,13 +165,14 @@ rectangle part(rectangle whole, int index) {
 }
 
 // 2 x 2 PCF: four samples, one in each quarter and no two in a line, so that edges along the axes get four steps.
+const vec2 sample_points[4] = vec2[4](vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.625, 0.875), vec2(0.125, 0.625));
+
 // Blocked share, and the blockers' mean light-space depth.
 vec2 sampled(receiver r, rectangle rect) {
-    const vec2 points[4] = vec2[4](vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.625, 0.875), vec2(0.125, 0.625));
     vec2 sum = vec2(0.0);
     for (int i = 0; i < 4; i++) {
         float depth;
-        if (blocker_at(r, mix(rect.low, rect.high, points[i]), depth))
+        if (blocker_at(r, mix(rect.low, rect.high, sample_points[i]), depth))
             sum += vec2(1.0, depth);
     }
     return vec2(0.25 * sum.x, sum.y / max(sum.x, 1.0));
@@ -223,6 +224,45 @@ bool find_blockers(receiver r, rectangle kernel, float nearest, out float depth)
     return sum.y > 0.0;
 }
 
+// The rectangle of an elliptic emitter's kernel has the same variance as the ellipse.
+const float BOX_SIDE = ELLIPSE == 1 && KERNEL == RECTANGLE ? 0.8660254 : 1.0;
+vec2 filter_half_size;         // half sides of the whole kernel, of which slabs are parts
+vec2 filter_pixel = vec2(0.0); // of the pixel's footprint in it
+
+// ROBUST: half sides of the kernel of what blocks at a depth. A kernel that must be split holds surfaces far apart, of which
+// one at its mean depth is a poor account: a step beside the receiver hides nothing beyond its own kernel, and more of the
+// light inside it than the mean kernel says.
+vec2 own_kernel(receiver r, float depth) {
+    vec2 soft = kernel_extent(r, kernel_scale(r, depth)) * BOX_SIDE;
+    return sqrt(soft * soft + filter_pixel * filter_pixel) + 1.0;
+}
+
+// Share of the light that a part of a kernel hides by samples, over that of one it fills.
+float hidden_by_samples(receiver r, rectangle rect) {
+    if (MODE != ROBUST)
+        return sampled(r, rect).x;
+    float sum = 0.0;
+    for (int i = 0; i < 4; i++) {
+        vec2 at = mix(rect.low, rect.high, sample_points[i]);
+        float depth;
+        bool blocked = blocker_at(r, at, depth);
+        vec2 own = own_kernel(r, depth), weight = max(filter_half_size / own, 1.0);
+        if (blocked && all(lessThanEqual(abs(at - r.center), own)))
+            sum += weight.x * weight.y;
+    }
+    return 0.25 * sum;
+}
+
+// The same where the part is as visible as the tables say, by the mean depth they hold.
+float hidden_by_tables(receiver r, int level, rectangle rect, float visibility, float nearest) {
+    vec2 blockers = MODE == ROBUST ? esm_blockers(r, mean_over(r, level, rect, true), nearest) : vec2(0.0);
+    if (blockers.x <= 0.0)
+        return 1.0 - visibility;
+    vec2 own = own_kernel(r, blockers.y), size = rect.high - rect.low;
+    vec2 overlap = max(min(rect.high, r.center + own) - max(rect.low, r.center - own), 0.0) * max(filter_half_size / own, 1.0);
+    return (1.0 - visibility) * overlap.x * overlap.y / (size.x * size.y);
+}
+
 // Visibility in a rectangle.
 float filter_rectangle(receiver r, rectangle rect, float nearest) {
     const int count = p_subdivision * p_subdivision, first = MODE == ROBUST ? -1 : 0;
@@ -240,19 +280,19 @@ float filter_rectangle(receiver r, rectangle rect, float nearest) {
         else if (mean.failed)
             failed |= 1 << i;
         else
-            sum += i < 0 ? visibility * float(count) : visibility;
+            sum += i < 0 ? visibility * float(count)
+                         : 1.0 - hidden_by_tables(r, level, part(rect, i), visibility, nearest);
     }
     for (; failed != 0; failed &= failed - 1)
-        sum += 1.0 - sampled(r, part(rect, findLSB(failed))).x;
-    return sum / float(count);
+        sum += 1.0 - hidden_by_samples(r, part(rect, findLSB(failed)));
+    return max(sum / float(count), 0.0);
 }
 
-// Visibility over the rectangle of the kernel; an elliptic emitter's has the same variance as the ellipse.
+// Visibility over the rectangle of the kernel.
 float filter_box(receiver r, float scale) {
-    vec2 half_size = kernel_extent(r, scale) * (ELLIPSE == 1 ? 0.8660254 : 1.0);
-    half_size = max(half_size, vec2(0.5));
-    rectangle rect = rectangle(r.center - half_size, r.center + half_size);
-    return filter_rectangle(r, rect, depth_range(r, half_size).x);
+    filter_half_size = max(kernel_extent(r, scale) * BOX_SIDE, vec2(0.5));
+    rectangle rect = rectangle(r.center - filter_half_size, r.center + filter_half_size);
+    return filter_rectangle(r, rect, depth_range(r, filter_half_size).x);
 }
 
 // ---- Elliptic kernels ----
@@ -311,7 +351,10 @@ float filter_slabs(receiver r, float scale) {
     ellipse e = filter_ellipse(r, scale);
     float width = sqrt(e.half_width * e.half_width + e.shear * e.shear * e.half_height * e.half_height);
     int level = MODE == ROBUST ? level_of(2.0 * vec2(width, e.half_height)) : 0;
-    float nearest = depth_range(r, vec2(width, e.half_height)).x;
+    mat2 pixel = receiver_footprint(r) * 0.5;
+    filter_pixel = sqrt(pixel[0] * pixel[0] + pixel[1] * pixel[1]);
+    filter_half_size = vec2(width, e.half_height);
+    float nearest = depth_range(r, filter_half_size).x;
     int count = max(int(ceil(2.0 * e.half_height / (p_slab_height * float(1 << level)))), 1);
     float height = 2.0 * e.half_height / float(count);
     vec2 sum = vec2(0.0);

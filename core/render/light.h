@@ -52,8 +52,8 @@ struct light_views {
     int count;                   /* 0: nothing to shadow */
     int layer_of_face[MAX_LIGHT_VIEWS]; /* map layer of the faces +Z +X -X +Y -Y -Z of the frame, -1: none */
     bool single;                 /* one view for every receiver, whatever its direction */
-    bool clip_behind;            /* some views look behind an emitter that shines to one side only: what is there hides nothing */
-    vec4 front;                  /* relative world: the plane of that emitter, positive before it */
+    bool clip_behind;            /* some look behind an emitter of one side, where nothing hides its light */
+    vec4 front;                  /* the plane of that emitter, positive before it, relative world */
 };
 
 /* Fits views of map_size texels to the receivers that light can reach and the casters that can shadow them. */

@@ -32,10 +32,10 @@ static const struct parameter parameters[] = {
            .label = "Exponent",
            .description =
                "Steepness of the shadow test. Light leaks under casters closer to their receiver than 3 / c of "
-               "the depth range; the larger, the more kernels must be split or sampled",
+               "the depth range; the larger, the more kernels must be split or sampled. 0: the largest that the number "
+               "format holds over the depth range",
            .unit = "",
            .type = PNB_FLOAT,
-           .minimum = 1,
            .maximum = 87,
            .default_value = 80},
     [DEPTH_RANGE] = {.name = "depth_range",
@@ -123,9 +123,20 @@ static int log2_of(int power) {
     return log;
 }
 
+/* c, or the optimal one for the range of t, which is 0..1 however deep the scene, and the number format. ROBUST:
+ * factors between planes, up to e^c, are single floats. AS_PUBLISHED: e^-c must be 50 units of its integers to be told
+ * from less; more would turn what is near to the light black. */
+static float essm_exponent(const double *values) {
+    const double most_of_floats = 80, resolved = 50;
+    if (values[C] > 0)
+        return (float)values[C];
+    return (float)(values[MODE] == MODE_ROBUST ? most_of_floats : log(exp2(values[BITS]) / resolved));
+}
+
 /* What the shaders of the prefilter and of the technique must agree on. */
 static void set_basis_uniforms(const struct gl *gl, GLuint program, const struct frame_light *light) {
     float near_ratio[8] = {0};
+    program_set_float(gl, program, "p_c", essm_exponent(light->parameters));
     program_set_int(gl, program, "tile_log", log2_of(light->prefiltered_tile));
     for (int i = 0; i < light->views.count; i++) {
         const struct light_view *view = &light->views.views[i];

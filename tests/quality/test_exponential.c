@@ -54,15 +54,16 @@ static void lit_depths(void) {
     struct test_scene *test = quality_scene("terraces", TEST_LIGHT_SUN, 0, NAN);
     pnb_settings settings = quality_settings(NULL, SIDE, SIDE);
     const struct choice robust[] = {{"min_max", 0}, {0}}, published[] = {{"mode", 1}, {0}},
-                        gentle[] = {{"mode", 1}, {"c", 10}, {0}};
+                        gentle[] = {{"mode", 1}, {"c", 0}, {0}};
     struct render a = render_with(test_scene_get(test), settings, "ESSM", robust),
                   b = render_with(test_scene_get(test), settings, "ESSM", published),
                   c = render_with(test_scene_get(test), settings, "ESSM", gentle);
-    printf("lit surfaces, darkest pixel   ROBUST   AS_PUBLISHED c = 80   c = 10\n");
+    printf("lit surfaces, darkest pixel   ROBUST   AS_PUBLISHED c = 80   optimal c\n");
     for (int i = 0; i <= 20 && a.job && b.job && c.job; i++) {
         printf("  normalised depth %.2f        %.3f    %.3f                 %.3f\n", i / 20.0, (double)darkest(&a, i),
                (double)darkest(&b, i), (double)darkest(&c, i));
         CHECK(darkest(&a, i) >= 0.99f);
+        CHECK(darkest(&c, i) >= 0.97f); /* e^-c is 50 units of 20 bits */
     }
     /* The paper's failure must show, or AS_PUBLISHED is not what was published. */
     CHECK(b.job && darkest(&b, 5) < 0.1f && darkest(&b, 10) < 0.1f && darkest(&b, 20) > 0.99f);
@@ -168,16 +169,16 @@ static void classification(const char *name) {
 
 /* ---- Micro-subdivision and elliptic kernels of ESSM ---- */
 
-/* Against REFERENCE, or against PCSS of 32 x 32 points, which has the same kernel and no failures. */
-static void subdivision(const char *name, const char *truth_technique) {
+/* Maps of 2048 and, for the stairs, 288 rows: at the foot of steps a texel decides, which leaves about 30 wrong pixels of
+ * 144 rows from 3 parts on, two more or less by chance. */
+static void subdivision(const char *name, uint32_t rows) {
     struct test_scene *test = quality_scene(name, TEST_LIGHT_RECTANGLE, 0, NAN);
-    pnb_settings settings = quality_scene_settings(NULL, test, 144);
+    pnb_settings settings = quality_scene_settings(NULL, test, rows);
     settings.light_samples = 10;
-    const struct choice many[] = {{"blocker_samples", 1024}, {"filter_samples", 1024}, {0}};
-    const bool reference = strcmp(truth_technique, "REFERENCE") == 0;
-    struct render truth = render_with(test_scene_get(test), settings, truth_technique, reference ? NULL : many);
+    settings.shadow_map_size = 2048;
+    struct render truth = render_with(test_scene_get(test), settings, "REFERENCE", NULL);
     double last = 100;
-    printf("%s: off %s by more than 0.2 with 1, 2, 3, 5 parts:", name, truth_technique);
+    printf("%s: off by more than 0.2 with 1, 2, 3, 5 parts:", name);
     for (int i = 0; i < 4; i++) {
         const struct choice parts[] = {{"subdivision", (double[]){1, 2, 3, 5}[i]}, {0}};
         struct render render = render_with(test_scene_get(test), settings, "ESSM", parts);
@@ -221,54 +222,103 @@ static void ellipses(void) {
 
 /* ---- Overlapping blockers ---- */
 
-/* Adds 1 to the pixels from which one slat alone, instance 1 + slat, hides the whole light. */
-static void add_umbra(const pnb_scene *all, pnb_settings settings, int slat, int *umbras) {
+/* What hides the light from a pixel, by REFERENCE. */
+struct hidden {
+    int wholly, partly; /* slats that alone hide all of it, some of it */
+    bool umbra;         /* all of them together hide all */
+};
+
+/* Slat `slat`, instance 1 + slat, alone; with -1 all of them. */
+static void add_hidden(const pnb_scene *all, pnb_settings settings, int slat, struct hidden *hidden) {
     pnb_scene scene = *all;
-    const pnb_instance instances[2] = {all->instances[0], all->instances[1 + slat]};
-    scene.instances = instances;
-    scene.instance_count = 2;
+    const pnb_instance instances[2] = {all->instances[0], all->instances[slat < 0 ? 0 : 1 + slat]};
+    if (slat >= 0) {
+        scene.instances = instances;
+        scene.instance_count = 2;
+    }
     settings.light_samples = 12;
     struct render truth = render_with(&scene, settings, "REFERENCE", NULL);
-    for (size_t i = 0; truth.job && i < (size_t)truth.width * truth.height; i++)
-        umbras[i] += truth.shadow[3 * i] == 0;
+    for (size_t i = 0; truth.job && i < (size_t)truth.width * truth.height; i++) {
+        const float visibility = truth.shadow[3 * i];
+        hidden[i].umbra = slat < 0 && visibility == 0;
+        hidden[i].wholly += slat >= 0 && visibility == 0;
+        hidden[i].partly += slat >= 0 && visibility > 0 && visibility < 1;
+    }
     render_free(&truth);
 }
 
-/* Where two slats each hide the whole light, light bleeds through with variance shadow maps. In the umbra of one that
- * is in the penumbra of another one mean depth stands for both, as in PCSS; that is not counted here. */
+/* Greatest visibility where `kind` is 0: two slats each hide the whole light, which bleeds through with variance shadow
+ * maps; 1: at least one does, and none hides a part; 2: all of the umbra. */
+static float brightest(const struct render *render, const struct hidden *hidden, int kind, int *pixels) {
+    float most = 0;
+    *pixels = 0;
+    for (int i = 0; render->job && i < SIDE * SIDE; i++) {
+        const struct hidden *h = &hidden[i];
+        const bool inside = kind == 0 ? h->wholly >= 2 : kind == 1 ? h->wholly >= 1 && h->partly == 0 : h->umbra;
+        if (!inside)
+            continue;
+        ++*pixels;
+        most = fmaxf(most, render->shadow[3 * i]);
+    }
+    return most;
+}
+
+/* In the umbra of one slat that is in the penumbra of another, one mean depth stands for both, in ESSM as in PCSS: its
+ * kernel is that of neither. That is no bleeding, and is printed beside PCSS's, not limited. */
 static void slats(int count) {
     struct test_scene *test = quality_scene("slats", TEST_LIGHT_RECTANGLE, 0, (float)count);
     pnb_settings settings = quality_settings(NULL, SIDE, SIDE);
     const struct choice no_skip[] = {{"min_max", 0}, {0}};
-    static int umbras[SIDE * SIDE];
-    memset(umbras, 0, sizeof umbras);
+    static struct hidden hidden[SIDE * SIDE];
+    memset(hidden, 0, sizeof hidden);
     for (int slat = 0; slat < count; slat++)
-        add_umbra(test_scene_get(test), settings, slat, umbras);
-    struct render render = render_with(test_scene_get(test), settings, "ESSM", no_skip);
-    float most = 0;
-    int pixels = 0;
-    for (int i = 0; render.job && i < SIDE * SIDE; i++)
-        if (umbras[i] >= 2) {
-            pixels++;
-            most = fmaxf(most, render.shadow[3 * i]);
-        }
-    printf("%d slats: greatest visibility in %d pixels of the umbra of two: %.4f\n", count, pixels, (double)most);
-    CHECK(pixels > 100);
-    CHECK_AT_MOST((double)most, 0.02);
-    render_free(&render);
+        add_hidden(test_scene_get(test), settings, slat, hidden);
+    add_hidden(test_scene_get(test), settings, -1, hidden);
+    struct render essm = render_with(test_scene_get(test), settings, "ESSM", no_skip),
+                  pcss = render_with(test_scene_get(test), settings, "PCSS", NULL);
+    static const char *const where[] = {"two hide all the light", "one does and none a part", "all of the umbra"};
+    for (int kind = 0; kind < 3; kind++) {
+        int pixels;
+        const float most = brightest(&essm, hidden, kind, &pixels);
+        printf("%d slats, greatest visibility where %-24s %5d pixels: ESSM %.4f", count, where[kind], pixels,
+               (double)most);
+        printf(", PCSS %.4f\n", (double)brightest(&pcss, hidden, kind, &pixels));
+        CHECK(pixels > 100);
+        if (kind < 2)
+            CHECK_AT_MOST((double)most, 0.02);
+    }
+    render_free(&essm);
+    render_free(&pcss);
     test_scene_destroy(&test);
 }
 
-int main(void) {
+static bool is_wanted(int count, char **parts, const char *part) {
+    for (int i = 1; i < count; i++)
+        if (strcmp(parts[i], part) == 0)
+            return true;
+    return count < 2;
+}
+
+/* Arguments: parts to run; none: all. */
+int main(int count, char **parts) {
     quality_open();
-    lit_depths();
-    contacts();
-    classification("fence");
-    classification("cubes");
-    subdivision("stairs", "PCSS");
-    subdivision("cubes", "REFERENCE");
-    ellipses();
-    slats(2);
-    slats(3);
+    if (is_wanted(count, parts, "depths"))
+        lit_depths();
+    if (is_wanted(count, parts, "contacts"))
+        contacts();
+    if (is_wanted(count, parts, "classification")) {
+        classification("fence");
+        classification("cubes");
+    }
+    if (is_wanted(count, parts, "subdivision")) {
+        subdivision("stairs", 288);
+        subdivision("cubes", 144);
+    }
+    if (is_wanted(count, parts, "ellipses"))
+        ellipses();
+    if (is_wanted(count, parts, "slats")) {
+        slats(2);
+        slats(3);
+    }
     return quality_close();
 }

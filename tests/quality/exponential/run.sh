@@ -1,8 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# run.sh BUILD_DIR: errors and times of ESM and ESSM beside PCSS. On a machine that does nothing else.
+# run.sh BUILD_DIR [CAPTURE.pnb ...]: errors and times of ESM and ESSM beside PCSS, errors also on the captures, such as those
+# of the samples. Takes minutes, on a machine that does nothing else.
 set -eu
 build=$1
+shift
 files=$(mktemp -d)
 trap 'rm -rf "$files"' EXIT
 scenes="half-plane ball hover slot discs slats perforated slanted-sheet sphere box fence stairs lantern tall-box cubes
@@ -17,11 +19,14 @@ rmse() { # options: error of the scene against its truth
 }
 
 echo "RMSE against REFERENCE of 16 x 16: ESM, ESSM, PCSS 15 x 15, PCSS 32 x 32"
-for scene in $scenes; do
-    "$build/make_scene" "$scene" "$files/scene.pnb"
+for scene in $scenes "$@"; do
+    case $scene in
+    *.pnb) cp "$scene" "$files/scene.pnb" ;;
+    *) "$build/make_scene" "$scene" "$files/scene.pnb" ;;
+    esac
     case $scene in half-plane | ball | hover | slot | discs | slats | perforated | slanted-sheet) size=180x180 ;; *) size=320x180 ;; esac
     "$build/penumbra" render "$files/scene.pnb" -s $size -t reference --light-samples 16 -o "$files/truth.exr" >"$files/log"
-    echo "$scene $(rmse '-t esm') $(rmse '-t essm') $(rmse "$grid15") $(rmse "$grid32")"
+    echo "$(basename "$scene" .pnb) $(rmse '-t esm') $(rmse '-t essm') $(rmse "$grid15") $(rmse "$grid32")"
 done | awk '{ print; for (i = 2; i <= 5; i++) sum[i] += $i; n++ }
     END { printf "mean"; for (i = 2; i <= 5; i++) printf " %.4f", sum[i] / n; printf "\nESSM / PCSS 15 x 15: %.3f\n", sum[3] / sum[4] }'
 
