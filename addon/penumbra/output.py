@@ -42,30 +42,27 @@ def _find_fault_of_disk(path):
     return None
 
 
-def _newest(paths):
-    """The one written last; the first if there is none. Blender does not tell whether frames are numbered."""
-    return max((path for path in paths if os.path.isfile(path)), key=os.path.getmtime, default=paths[0])
-
-
-def _paths(scene):
+def _candidates(scene):
+    """(path with the frame's number, path of a still) of each file. Blender does not tell which of them it writes."""
     render = scene.render
-    if render.use_multiview and render.image_settings.views_format == 'INDIVIDUAL':
-        return [render.frame_path(frame=scene.frame_current, view=view.name) for view in render.views if view.use]
-    path = bpy.path.abspath(render.filepath)
-    still = path if path.lower().endswith(render.file_extension) else path + render.file_extension
-    return [_newest([render.frame_path(frame=scene.frame_current), still])]
+    each = render.use_multiview and render.image_settings.views_format == 'INDIVIDUAL'
+    still = bpy.path.abspath(render.filepath).removesuffix(render.file_extension)
+    for view in [view for view in render.views if view.use] if each else [None]:
+        yield (render.frame_path(frame=scene.frame_current, view=view.name if view else ""),
+               still + (view.file_suffix if view else "") + render.file_extension)
 
 
 def _remove_faulty(scene):
-    """(path, fault) of what was written in this render and is not whole."""
+    """(path, fault) of what was written in this render and is not whole. What could not be made at all, Blender reports."""
     if scene.render.engine != 'PENUMBRA' or scene.render.is_movie_format:
         return
-    for path in _paths(scene):
-        fault = find_fault(path)
-        if fault:
-            if os.path.isfile(path) and os.path.getmtime(path) >= _started[0]:
+    for paths in _candidates(scene):
+        for path in paths:
+            is_new = os.path.isfile(path) and os.path.getmtime(path) >= _started[0]
+            fault = is_new and find_fault(path)
+            if fault:
                 os.remove(path)
-            yield path, fault
+                yield path, fault
 
 
 @bpy.app.handlers.persistent
