@@ -34,6 +34,14 @@ void text_format_list(char *to, size_t size, const char *format, va_list argumen
     }
 }
 
+void text_make_line(char *text) {
+    for (; *text; ++text) {
+        if ((unsigned char)*text < ' ' || *text == '\x7f') {
+            *text = ' ';
+        }
+    }
+}
+
 void text_format(char *to, size_t size, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);

@@ -51,6 +51,7 @@ void messages_add(struct messages *messages, const char *format, ...) {
     va_start(arguments, format);
     text_format_list(text, sizeof text, format, arguments);
     va_end(arguments);
+    text_make_line(text);
 
     pthread_mutex_lock(&messages->lock);
     if (messages->count < MAX_MESSAGES && !is_known(messages, text) && reserve_one(messages)) {

@@ -12,9 +12,9 @@
 #define MIN_ADDRESS_SPACE ((uint64_t)768 << 20)
 
 pnb_result backend_choose(const char *name, struct backend_choice *choice) {
-    const char *source = "backend";
+    const char *source = "";
     if (!name || !name[0]) {
-        source = "environment variable PENUMBRA_BACKEND";
+        source = "environment variable PENUMBRA_BACKEND: ";
         name = getenv("PENUMBRA_BACKEND");
     }
     *choice = (struct backend_choice){.device = -1};
@@ -31,8 +31,8 @@ pnb_result backend_choose(const char *name, struct backend_choice *choice) {
     } else if (strcmp(name, "osmesa") == 0) {
         choice->osmesa = true;
     } else {
-        return error_set(PNB_ERROR_INVALID_ARGUMENT, "unknown %s \"%s\": use egl, egl:N, surfaceless or osmesa", source,
-                         name);
+        return error_set(PNB_ERROR_INVALID_ARGUMENT, "%sunknown backend \"%s\": use egl, egl:N, surfaceless or osmesa",
+                         source, name);
     }
     return PNB_OK;
 }

@@ -149,7 +149,7 @@ typedef struct pnb_mesh_desc {
     const char *name;             /* for messages; NULL: "mesh" */
     pnb_array positions;          /* float[3] per vertex, metres in object space */
     pnb_array corner_vertices;    /* uint32 vertex of each corner; absent: corner i is vertex i */
-    pnb_array corner_normals;     /* float[3] per corner, any length; absent or zero: the triangle's own normal */
+    pnb_array corner_normals;     /* float[3] per corner, absent, zero or not finite: the triangle's own normal */
     pnb_array corner_uvs;         /* float[2] per corner; absent: zero */
     pnb_array triangles;          /* uint32[3] corners of each triangle, counter-clockwise seen from the front */
     pnb_array triangle_polygons;  /* uint32 polygon of each triangle; absent: polygon i is triangle i */
@@ -399,7 +399,7 @@ typedef struct pnb_settings {
     uint32_t crop[4];            /* x, y, width, height, from the lower left: only these pixels are made, and they
                                   * equal those of the full image. Width 0: the full image */
     uint32_t samples;            /* anti-aliasing samples per pixel, 1..4096, 0: 1. One sample is at pixel centres */
-    float filter_width;          /* pixels, of the Blackman-Harris filter the samples follow; 0: 1.5 */
+    float filter_width;          /* pixels, of the Blackman-Harris filter the samples follow, below 100; 0: 1.5 */
     uint32_t shadow_map_size;    /* texels per side, 16..max_texture_size; 0: 1024 */
     uint32_t light_samples;      /* REFERENCE: N for N x N light samples, 1..64; 0: 16 */
     uint32_t passes;             /* enum pnb_pass; 0: all but LIGHT_SHADOWS */

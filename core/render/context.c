@@ -46,6 +46,7 @@ void context_log(pnb_context *context, pnb_log_level level, const char *format, 
     va_start(arguments, format);
     text_format_list(text, sizeof text, format, arguments);
     va_end(arguments);
+    text_make_line(text);
     pthread_mutex_lock(&context->log_lock);
     context->log(context->log_user, level, text);
     pthread_mutex_unlock(&context->log_lock);

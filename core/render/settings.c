@@ -33,6 +33,15 @@ static pnb_result check_bits(const char *name, uint32_t value, uint32_t known) {
     return error_set(PNB_ERROR_INVALID_ARGUMENT, "settings: unknown %s 0x%x", name, value & ~known);
 }
 
+static float resolve_filter_width(float width, struct messages *messages) {
+    const float fallback = 1.5f;
+    if (width > 0 && width < 100)
+        return width;
+    if (width != 0)
+        messages_add(messages, "settings: filter_width is %g, taken as %g", (double)width, (double)fallback);
+    return fallback;
+}
+
 static pnb_result resolve_crop(const pnb_settings *from, struct settings *to) {
     memcpy(to->crop, from->crop, sizeof to->crop);
     if (to->crop[2] == 0) {
@@ -137,7 +146,7 @@ pnb_result settings_resolve(const pnb_settings *from, uint32_t max_texture_size,
         .width = from->width,
         .height = from->height,
         .samples = or_default(from->samples, 1),
-        .filter_width = from->filter_width > 0.0f && from->filter_width < 100.0f ? from->filter_width : 1.5f,
+        .filter_width = resolve_filter_width(from->filter_width, messages),
         .shadow_map_size = or_default(from->shadow_map_size, 1024),
         .light_samples = or_default(from->light_samples, 16),
         .passes = or_default(from->passes, DEFAULT_PASSES),

@@ -113,6 +113,7 @@ bool light_resolve(const pnb_light *from, const char *name, struct messages *mes
     light_resolve_axes(to, name, messages);
     if (to->type == PNB_LIGHT_AREA) {
         light_resolve_size(to);
+        to->spread = clamped(to->spread, 0, PI, name, "spread", messages);
         to->spread = to->spread > 0 ? fmaxf(to->spread, MIN_SPREAD) : 0;
         to->spread = to->spread < MAX_SPREAD ? to->spread : 0;
     }

@@ -302,6 +302,11 @@ static void bad_lights(void) {
     ROW(PNB_OK, "", room.settings.passes = PNB_PASS_BLOCKERS | PNB_PASS_PENUMBRAE | PNB_PASS_SHADOW_MAPS);
     ROW(PNB_OK, "", room.lights[ROOM_AREA].shape = PNB_AREA_ELLIPSE; LAMPS(light->spread = 1);
         room.settings.passes = PNB_PASS_BLOCKERS);
+    ROW(PNB_OK, "light 'Area': its spread of -1 is taken as 0", room.lights[ROOM_AREA].spread = -1);
+    ROW(PNB_OK, "light 'Area': its spread of 7 is taken as 3.14159", room.lights[ROOM_AREA].spread = 7);
+}
+
+static void bad_overrides(void) {
     pnb_light *const point = &room.lights[ROOM_POINT];
     ROW(INVALID, "light 'Point': there is no technique 'NONE'", point->technique = "NONE");
     ROW(PNB_OK, "", point->technique = "");
@@ -441,8 +446,9 @@ static void bad_settings(void) {
     ROW(PNB_ERROR_UNSUPPORTED, "width", settings->width = most + 1);
     ROW(PNB_ERROR_UNSUPPORTED, "height", settings->height = UINT32_MAX);
     ROW(INVALID, "samples", settings->samples = 4097);
-    ROW(PNB_OK, "", settings->samples = 5; settings->filter_width = NAN);
-    ROW(PNB_OK, "", settings->samples = 5; settings->filter_width = -1);
+    ROW(PNB_OK, "filter_width is nan, taken as 1.5", settings->samples = 5; settings->filter_width = NAN);
+    ROW(PNB_OK, "filter_width is -1, taken as 1.5", settings->samples = 5; settings->filter_width = -1);
+    ROW(PNB_OK, "filter_width is 100, taken as 1.5", settings->samples = 5; settings->filter_width = 100);
     ROW(PNB_OK, "", settings->samples = 5; settings->filter_width = 99);
     ROW(PNB_OK, "", settings->samples = 5; settings->filter_width = 1e-30f);
     ROW(INVALID, "shadow_map_size", settings->shadow_map_size = 15);
@@ -574,11 +580,11 @@ static const struct group {
 } groups[] = {
 #define GROUP(rows, every_technique)                                                                                   \
     { #rows, rows, every_technique }
-    GROUP(bad_handles, false),      GROUP(bad_meshes, true),  GROUP(bad_instances, true),
-    GROUP(bad_materials, true),     GROUP(bad_lights, true),  GROUP(bright_scenes, true),
-    GROUP(misplaced_lights, true),  GROUP(bad_cameras, true), GROUP(far_scenes, true),
-    GROUP(bad_settings, false),     GROUP(bad_crops, false),  GROUP(bad_parameters, false),
-    GROUP(parameter_ranges, false),
+    GROUP(bad_handles, false),    GROUP(bad_meshes, true),        GROUP(bad_instances, true),
+    GROUP(bad_materials, true),   GROUP(bad_lights, true),        GROUP(bright_scenes, true),
+    GROUP(bad_overrides, true),   GROUP(misplaced_lights, true),  GROUP(bad_cameras, true),
+    GROUP(far_scenes, true),      GROUP(bad_settings, false),     GROUP(bad_crops, false),
+    GROUP(bad_parameters, false), GROUP(parameter_ranges, false),
 };
 
 /* A context of its own for each group shows which one leaks. */

@@ -26,6 +26,16 @@ static void are_kept_in_order_and_once(void **state) {
     assert_int_equal(messages.count, 0);
 }
 
+/* Hosts print one line per message; names of objects may hold anything. */
+static void are_single_lines(void **state) {
+    (void)state;
+    struct messages messages;
+    messages_init(&messages);
+    messages_add(&messages, "Box '%s': %d\r\n", "two\nlines\tand a \x1b[31mcolour\x7f", 1);
+    assert_string_equal(messages.texts[0], "Box 'two lines and a  [31mcolour ': 1  ");
+    messages_free(&messages);
+}
+
 static void are_limited_to_1000(void **state) {
     (void)state;
     struct messages messages;
@@ -84,6 +94,7 @@ static int nothing_is_left(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(are_kept_in_order_and_once, nothing_is_left),
+        cmocka_unit_test_teardown(are_single_lines, nothing_is_left),
         cmocka_unit_test_teardown(are_limited_to_1000, nothing_is_left),
         cmocka_unit_test_teardown(are_dropped_without_memory, nothing_is_left),
         cmocka_unit_test_teardown(may_come_from_any_thread, nothing_is_left),
