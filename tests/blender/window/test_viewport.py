@@ -90,7 +90,7 @@ class Edits(ViewportTest):
     def test_shading_switch(self):
         """What happened while the viewport was drawn by another engine."""
         yield from self.check("rendered")
-        for number, shading in enumerate(('SOLID', 'WIREFRAME', 'MATERIAL')):
+        for shading in ('SOLID', 'WIREFRAME'):
             self.space().shading.type = shading
             yield from self.settle()
             bpy.data.objects["Cube"].location.x += 0.3
