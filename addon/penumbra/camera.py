@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Camera object -> pnb_camera."""
 
+from math import tan
+from types import SimpleNamespace
+
 from . import capi
 from .lights import column_major
 
 
 def fill_camera(target, ob, matrix, shift_x, width, height, aspect, warnings):
     """`aspect`: height over width of a pixel; `shift_x`: the camera's, with the eye's shift in stereo."""
-    camera = ob.data
+    camera = ob.data if ob.type == 'CAMERA' else _stand_in(ob, warnings)
     target.matrix[:] = column_major(matrix)
     orthographic = camera.type == 'ORTHO'
     if camera.type not in {'ORTHO', 'PERSP'}:
@@ -16,6 +19,15 @@ def fill_camera(target, ob, matrix, shift_x, width, height, aspect, warnings):
     target.window[:] = _window(camera, orthographic, shift_x, width, height * aspect)
     target.clip_start = camera.clip_start
     target.clip_end = camera.clip_end
+
+
+def _stand_in(ob, warnings):
+    """Any object may be a scene's camera: Blender looks through it with 35 mm, through a spot light with its cone."""
+    is_spot = ob.type == 'LIGHT' and ob.data.type == 'SPOT'
+    lens = 16.0 / tan(ob.data.spot_size / 2.0) if is_spot else 35.0
+    warnings.append(f"object '{ob.name}': it is no camera, it is looked through with a lens of {lens:.3g} mm")
+    return SimpleNamespace(type='PERSP', sensor_fit='AUTO', sensor_width=36.0, sensor_height=24.0, lens=lens,
+                           shift_y=0.0, clip_start=0.1, clip_end=1000.0)
 
 
 def _window(camera, orthographic, shift_x, width, height):

@@ -100,8 +100,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
             self.active_view_set(view)
         render = scene.render
         camera = scene.camera
-        exported.set_camera(camera, self.camera_model_matrix(camera), self.camera_shift_x(camera), width, height,
-                            render.pixel_aspect_y / render.pixel_aspect_x)
+        exported.set_camera(camera, *self._pose(camera), width, height, render.pixel_aspect_y / render.pixel_aspect_x)
         values = settings.for_still(depsgraph, width, height)
         exported.use_own_techniques(settings.forced_technique() is None)
         path = CaptureRequest.path or capture_path(depsgraph)
@@ -128,6 +127,12 @@ class PenumbraEngine(bpy.types.RenderEngine):
         finally:
             self.end_result(result, cancel=not done)
         return done
+
+    def _pose(self, camera):
+        """(matrix, shift in x), those of the eye in stereo. Of what is no camera, Blender would read memory at random."""
+        if camera.type != 'CAMERA':
+            return camera.matrix_world.normalized(), 0.0
+        return self.camera_model_matrix(camera), self.camera_shift_x(camera)
 
     def _wait(self, job, warnings):
         """Shows progress until the job ends; False if the user cancelled it."""
@@ -205,6 +210,9 @@ class PENUMBRA_OT_capture(bpy.types.Operator):
         scene = context.scene
         before = scene.render.engine
         path = bpy.path.abspath(self.filepath)
+        if not path:
+            self.report({'ERROR'}, "No file name was given")
+            return {'CANCELLED'}
         CaptureRequest.path = path
         try:
             scene.render.engine = 'PENUMBRA'

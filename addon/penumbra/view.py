@@ -80,7 +80,7 @@ def _border(context, scene):
     """Of the camera frame in camera view, of the region elsewhere; all of the region without one."""
     region_3d, space = context.region_data, context.space_data
     if region_3d.view_perspective == 'CAMERA':
-        if not scene.render.use_border or not scene.camera:
+        if not scene.render.use_border or not scene.camera or scene.camera.type != 'CAMERA':
             return 0.0, 0.0, 1.0, 1.0
         left, bottom, right, top = _camera_frame(region_3d, scene)
         bounds = scene.render

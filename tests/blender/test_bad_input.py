@@ -10,8 +10,8 @@ from unittest import mock
 
 import bpy
 
-from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_mesh, add_plane, output, run_blender,
-                     white_material)
+from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_mesh, add_object, add_plane, output,
+                     run_blender, white_material)
 
 from penumbra import report
 
@@ -73,6 +73,20 @@ class BadInput(SceneTest):
         add_light("Inside", 'POINT', location=(0, 0, 0.5), shadow_soft_size=0.1)
         add_light("Flush", 'AREA', location=(0, 0, 0), rotation=(math.pi, 0, 0), size=1.0)
         self.finite()
+
+    def test_what_is_no_camera(self):
+        """Blender looks through any object, with a lens of 35 mm, or of a spot light's cone."""
+        place = {'location': (1, -2, 6), 'rotation': (0.3, 0.1, 0.0)}
+        spot = {'spot_size': 2 * math.atan(16 / 24), 'energy': 0.0}
+        for lens, ob in ((35, add_object("Target", None, **place)), (35, add_cube("Block", **place)),
+                         (35, add_light("Lamp", 'AREA', energy=0.0, **place)),
+                         (24, add_light("Torch", 'SPOT', **place, **spot))):
+            with self.subTest(name=ob.name):
+                ob.visible_camera = ob.visible_shadow = False
+                self.scene.camera = ob
+                seen = self.finite(ob.name)
+                add_camera(lens=lens, **place)
+                self.assertLess(max(abs(a - b) for a, b in zip(seen, self.finite())), 1e-4)
 
     def test_too_many_lights(self):
         for number in range(70):
@@ -230,6 +244,10 @@ class BadInput(SceneTest):
         self.addCleanup(lambda: bpy.app.handlers.frame_change_pre.remove(edit))
         bpy.ops.render.render(animation=True)
         self.assertTrue(os.path.exists(output("edited_0004.png")))
+
+    def test_capture_without_a_name(self):
+        with self.assertRaisesRegex(RuntimeError, "No file name"):
+            bpy.ops.penumbra.capture(filepath="")
 
     def test_again_after_a_failure(self):
         self.scene.camera = None
