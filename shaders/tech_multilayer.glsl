@@ -4,6 +4,9 @@
 #include "common_min_max.glsl"
 #include "common_fragments.glsl"
 #include "common_horizon.glsl"
+#ifdef ANTIALIAS
+#include "common_footprint.glsl"
+#endif
 
 uniform ivec4 levels[14];        // first head, texels per side, log2 of a texel's width, border of a stack or -1
 uniform float filter_widths[14]; // of the box with the variance of the level's filter, in texels of the map
@@ -62,8 +65,20 @@ float kernel_side(receiver r) {
     return max(sqrt(ELLIPSE == 1 ? 0.25 * PI * area : area), 1e-20);
 }
 
-// Light-space depth at which the kernel is so wide.
-float depth_of_width(receiver r, float side, float width) {
+// What kernels are at least as wide as, in texels: with shadow anti-aliasing the longer side of a pixel.
+float least_width(receiver r) {
+#ifdef ANTIALIAS
+    mat2 footprint = receiver_footprint(r);
+    return max(length(footprint[0]), length(footprint[1]));
+#else
+    return 0.0;
+#endif
+}
+
+// Light-space depth at which the kernel is so wide; none for a width that no kernel has.
+float depth_of_width(receiver r, float side, float width, float least) {
+    if (width <= least)
+        return 3e38;
     float scale = width / side;
     return is_perspective() ? 1.0 / (scale + 1.0 / r.position.z) : r.position.z - scale;
 }
@@ -71,15 +86,17 @@ float depth_of_width(receiver r, float side, float width) {
 // Depths between which fragments are looked up in a level, and the depth at which its filter fits.
 struct level_depths {
     float nearest, own, farthest;
+    float least; // width of any kernel
 };
 
-level_depths depths_of_level(receiver r, float side, int level) {
+level_depths depths_of_level(receiver r, float side, float least, int level) {
     level_depths d;
-    d.nearest = level + 1 < level_count ? depth_of_width(r, side, filter_widths[level + 1]) : -3e38;
-    d.own = level + 1 < level_count ? depth_of_width(r, side, filter_widths[level]) : -3e38;
-    d.farthest = level > 0 ? depth_of_width(r, side, filter_widths[level - 1]) : 3e38;
+    d.nearest = level + 1 < level_count ? depth_of_width(r, side, filter_widths[level + 1], least) : -3e38;
+    d.own = level + 1 < level_count ? depth_of_width(r, side, filter_widths[level], least) : -3e38;
+    d.farthest = level > 0 ? depth_of_width(r, side, filter_widths[level - 1], least) : 3e38;
     if (level == 0)
         d.own = 3e38;
+    d.least = least;
     return d;
 }
 
@@ -127,7 +144,7 @@ void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, flo
             continue;
         OPACITY opacity = level > 0 ? opacity_above(r, height, depth, width, fragment_opacity(i)) : fragment_opacity(i);
         bool is_lower = depth < d.own || level == 0;
-        float kernel = log2(max(side * kernel_scale(r, depth), 1e-20));
+        float kernel = log2(max(side * kernel_scale(r, depth), max(d.least, 1e-20)));
         int low = is_lower ? level : level - 1;
         float from = log2(filter_widths[low]), to = log2(filter_widths[min(low + 1, level_count - 1)]);
         float t = to > from ? clamp((kernel - from) / (to - from), 0.0, 1.0) : 0.0;
@@ -162,7 +179,7 @@ void look_up_bilinear(receiver r, vec2 center, int level, level_depths d, float 
 }
 
 // The first level whose filter is as wide as the widest kernel of any caster around; -1: nothing can shadow the receiver.
-int last_level(receiver r, float side) {
+int last_level(receiver r, float side, float least) {
     float scale = max(kernel_scale(r, nearest_depth(r)), 0.0);
     vec2 extent;
     vec2 depths;
@@ -175,13 +192,13 @@ int last_level(receiver r, float side) {
     if (classify(r, extent, depths) == 1.0)
         return -1;
     int level = 0;
-    while (level + 1 < level_count && filter_widths[level] < side * scale)
+    while (level + 1 < level_count && filter_widths[level] < max(side * scale, least))
         level++;
     return level;
 }
 
 // What hides a part of the emitter. aside: where the centre of its kernel lies, in widths of the kernel.
-OPACITY hidden(receiver r, vec2 aside, float side, int last) {
+OPACITY hidden(receiver r, vec2 aside, float side, float least, int last) {
     float facing = abs(is_perspective() ? dot(r.normal, normalize(r.position)) : r.normal.z);
     float texel = r.texel_size * (is_perspective() ? r.position.z : 1.0) * sqrt(max(1.0 - facing * facing, 0.0));
     float plane = r.plane;
@@ -193,7 +210,7 @@ OPACITY hidden(receiver r, vec2 aside, float side, int last) {
         // The first level serves kernels from nothing to its filter's width.
         vec2 center = r.center + (level > 0 ? 1.0 : 0.5) * filter_widths[level] * aside;
         share here, upper;
-        look_up_bilinear(r, center, level, depths_of_level(r, side, level), side, here, upper);
+        look_up_bilinear(r, center, level, depths_of_level(r, side, least, level), side, here, upper);
         if (level > 0)
             opacity = combine(opacity, blend(lower, upper));
         lower = here;
@@ -207,13 +224,14 @@ vec3 technique_visibility(receiver r) {
     seen_emitter seen = emitter_seen(r);
     float parts = float(p_lookups);
     float side = kernel_side(r) * sqrt(seen.scale.x * seen.scale.y) / parts;
-    int last = last_level(r, side);
+    float least = least_width(r) / parts;
+    int last = last_level(r, side, least);
     OPACITY opacity = OPACITY(0.0);
     vec2 extent = (ELLIPSE == 1 ? 0.886 : 1.0) * seen.scale; // half sides of the square with its area
     for (int i = 0; i < p_lookups * p_lookups; i++) {
         vec2 part = vec2(float(i % p_lookups), float(i / p_lookups));
         vec2 center = seen.center + extent * ((2.0 * part + 1.0) / parts - 1.0);
-        opacity += hidden(r, r.kernel * center / side, side, last) / (parts * parts);
+        opacity += hidden(r, r.kernel * center / side, side, least, last) / (parts * parts);
     }
     return vec3(clamp(seen.share * (1.0 - opacity), 0.0, 1.0)); // rounding
 }

@@ -17,7 +17,8 @@ enum {
     FACES,
     BASE_MERGE_DISTANCE,
     SUBSAMPLING,
-    LOOKUPS
+    LOOKUPS,
+    ANTIALIASING
 };
 
 static const char *const pyramids[] = {"MIP_MAP", "Y_MAP", NULL};
@@ -138,10 +139,21 @@ static const struct parameter parameters[] = {
                  .minimum = 1,
                  .maximum = 4,
                  .default_value = 2},
+    [ANTIALIASING] = {.name = "antialiasing",
+                      .label = "Shadow Anti-Aliasing",
+                      .description = "Shadows are at least as soft as a pixel is wide, where pixels are wider than the "
+                                     "map's texels: for pictures of one sample",
+                      .unit = "",
+                      .type = PNB_BOOL,
+                      .maximum = 1},
     {0}};
 
 static const char *multilayer_defines(const double *values) {
-    return accumulation_define((int)values[LOOKUP_ACCUMULATION]);
+    static const char *const antialiased[] = {"#define ACCUMULATION 0\n#define ANTIALIAS\n",
+                                              "#define ACCUMULATION 1\n#define ANTIALIAS\n",
+                                              "#define ACCUMULATION 2\n#define ANTIALIAS\n"};
+    const int accumulation = (int)values[LOOKUP_ACCUMULATION];
+    return values[ANTIALIASING] > 0.0 ? antialiased[accumulation] : accumulation_define(accumulation);
 }
 
 /* Side of the square with the emitter's area. */

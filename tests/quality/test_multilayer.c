@@ -102,6 +102,24 @@ static void every_other_pixel_suffices(void) {
     render_free(&full);
 }
 
+/* Pickets far away, whose shadows are finer than pixels: one sample of each pixel against many. */
+static void shadows_are_antialiased(void) {
+    struct test_scene *test = quality_scene("grazing-fence", TEST_LIGHT_RECTANGLE, 0, NAN);
+    pnb_settings settings = quality_scene_settings("MULTILAYER", test, 72);
+    settings.samples = 24;
+    struct render truth = quality_render(test_scene_get(test), &settings);
+    settings.samples = 1;
+    const double without = error_of(quality_render(test_scene_get(test), &settings), &truth);
+    const pnb_value on = {"antialiasing", 1};
+    settings.values = &on;
+    settings.value_count = 1;
+    const double with = error_of(quality_render(test_scene_get(test), &settings), &truth);
+    printf("grazing fence: off by %.4f, with shadow anti-aliasing %.4f\n", without, with);
+    CHECK_AT_MOST(with, 0.85 * without); /* the outlines of the pickets stay as they are */
+    render_free(&truth);
+    test_scene_destroy(&test);
+}
+
 /* test_fragment_lists checks which faces are left out; here that the parameter does it. */
 static void back_faces_are_an_option(void) {
     struct render all = render_scene("tall-box", 0, "MULTILAYER", NULL, 0);
@@ -116,6 +134,7 @@ int main(void) {
     overlapping_occluders();
     y_map_has_no_texels();
     every_other_pixel_suffices();
+    shadows_are_antialiased();
     back_faces_are_an_option();
     return quality_close();
 }
