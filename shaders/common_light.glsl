@@ -49,17 +49,32 @@ int light_layer(vec3 position) {
 #endif
 }
 
-// Share of a SPOT's intensity in the direction of a point, with the smooth edge Blender draws.
+// Integral of smoothstep(0, 1, t).
+float smooth_integral(float t) {
+    float inside = clamp(t, 0.0, 1.0);
+    return inside * inside * inside * (1.0 - 0.5 * inside) + max(t - 1.0, 0.0);
+}
+
+// Share of a SPOT's intensity in the direction of a point, with the smooth edge Blender draws. Each point of its bulb has a
+// cone of its own: the edge is averaged over two overlapping intervals, whose second and fourth moments are those of a disk.
 float light_cone(vec3 position) {
     vec3 d = position - light.position.xyz;
     vec3 local = vec3(dot(d, light.frame_x.xyz) / light.cone.z, dot(d, light.frame_y.xyz) / light.cone.w,
                       dot(d, light.frame_z.xyz));
-    float c = local.z / max(length(local), 1e-12);
+    float far = max(length(local), 1e-12);
+    float c = local.z / far, radius = light.emission.w;
     float width = (1.0 - light.cone.x) * light.cone.y;
-    if (c <= light.cone.x)
-        return 0.0;
-    float edge = width > 0.0 ? smoothstep(0.0, 1.0, (c - light.cone.x) / width) : 1.0;
-    return light.frame_y.w != 0.0 ? edge * c : edge;
+    width = radius > 0.0 ? max(width, 1e-4) : width;
+    float edge = c > light.cone.x ? 1.0 : 0.0, spread = 0.0;
+    float t = (c - light.cone.x) / max(width, 1e-12);
+    if (radius > 0.0)
+        spread = radius * length(vec3(c * local.xy / (far * light.cone.zw), 1.0 - c * c)) / (far * width);
+    if (spread > 0.01)
+        edge = (smooth_integral(t + 0.978148 * spread) - smooth_integral(t - 0.669128 * spread) +
+                smooth_integral(t + 0.669128 * spread) - smooth_integral(t - 0.978148 * spread)) / (3.294552 * spread);
+    else if (width > 0.0)
+        edge *= smoothstep(0.0, 1.0, t);
+    return light.frame_y.w != 0.0 ? edge * max(c, 0.0) : edge;
 }
 
 #ifdef SPREAD

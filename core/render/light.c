@@ -46,6 +46,8 @@ void emitter_init(struct emitter *emitter, const struct scene_light *light, cons
         glm_mat3_identity(emitter->frame); /* shines everywhere: its rotation must not change the shadow */
     if (light->type == PNB_LIGHT_POINT || light->type == PNB_LIGHT_SPOT)
         emitter->radius = light->radius;
+    if (light->type == PNB_LIGHT_SPOT)
+        emitter->cone_offset = light->radius; /* each point of the bulb shines into a cone of its own */
     if (light->type == PNB_LIGHT_SUN)
         emitter->tan_half_angle = tanf(fminf(0.5f * light->angle, 1.5f));
     emitter->cos_cone = cosf(0.5f * light->spot_angle);

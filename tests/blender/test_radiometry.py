@@ -60,9 +60,8 @@ class Radiometry(CyclesTest):
                    rotation=(0.3, 0.4, 0.5), scale=(2, 1, 3))
 
     def test_spot_large_tilted_and_scaled(self):
-        """Cycles averages the rim of the cone over the bulb, of which we take the centre: 5 % where a thirtieth of the
-        light is left."""
-        self.check(0.05, 'SPOT', spot_size=math.radians(90), spot_blend=0.8, shadow_soft_size=0.02,
+        """Every point of the bulb has a cone of its own."""
+        self.check(0.02, 'SPOT', spot_size=math.radians(90), spot_blend=0.8, shadow_soft_size=0.02,
                    rotation=(0.3, 0.4, 0.5), scale=(2, 1, 3))
 
     def test_sun_small(self):

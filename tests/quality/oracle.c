@@ -33,13 +33,13 @@ static void across(const double v[3], double x[3], double y[3]) {
         y[i] = v[(i + 1) % 3] * x[(i + 2) % 3] - v[(i + 2) % 3] * x[(i + 1) % 3];
 }
 
-/* Intensity of a SPOT in the direction of a point, over that of its axis. */
-static double cone(const pnb_light *light, const double position[3]) {
+/* Intensity of a point of a SPOT in the direction of a position, over that of its axis. */
+static double cone(const pnb_light *light, const double point[3], const double position[3]) {
     double axes[3][3], lengths[3], local[3], to_point[3];
     for (int i = 0; i < 3; i++) {
         column(light, i, axes[i]);
         lengths[i] = normalize(axes[i]);
-        to_point[i] = position[i] - light->matrix[12 + i];
+        to_point[i] = position[i] - point[i];
     }
     for (int i = 0; i < 3; i++)
         local[i] = dot(to_point, axes[i]) * lengths[2] / lengths[i];
@@ -91,7 +91,7 @@ static double emitter_point(const pnb_light *light, const double position[3], co
         return 0;
     const double intensity = light->emission[0] * fabs(facing) / (distance * distance);
     if (light->type != PNB_LIGHT_AREA)
-        return intensity * (light->type == PNB_LIGHT_SPOT ? cone(light, position) : 1);
+        return intensity * (light->type == PNB_LIGHT_SPOT ? cone(light, point, position) : 1);
     const double area = light->size[0] * light->size[1] * normalize(u) * normalize(v);
     return intensity * area * (light->shape == PNB_AREA_ELLIPSE ? PI / 4 : 1);
 }
