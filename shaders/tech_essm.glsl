@@ -237,9 +237,14 @@ vec2 own_kernel(receiver r, float depth) {
     return sqrt(soft * soft + filter_pixel * filter_pixel) + 1.0;
 }
 
+// Not for kernels as wide as an eighth of the map: of those the few samples and the mean depths of parts say too little.
+bool counts_own_kernels(receiver r) {
+    return MODE == ROBUST && 16.0 * max(filter_half_size.x, filter_half_size.y) < float(r.map_size.x);
+}
+
 // Share of the light that a part of a kernel hides by samples, over that of one it fills.
 float hidden_by_samples(receiver r, rectangle rect) {
-    if (MODE != ROBUST)
+    if (!counts_own_kernels(r))
         return sampled(r, rect).x;
     float sum = 0.0;
     for (int i = 0; i < 4; i++) {
@@ -255,7 +260,7 @@ float hidden_by_samples(receiver r, rectangle rect) {
 
 // The same where the part is as visible as the tables say, by the mean depth they hold.
 float hidden_by_tables(receiver r, int level, rectangle rect, float visibility, float nearest) {
-    vec2 blockers = MODE == ROBUST ? esm_blockers(r, mean_over(r, level, rect, true), nearest) : vec2(0.0);
+    vec2 blockers = counts_own_kernels(r) ? esm_blockers(r, mean_over(r, level, rect, true), nearest) : vec2(0.0);
     if (blockers.x <= 0.0)
         return 1.0 - visibility;
     vec2 own = own_kernel(r, blockers.y), size = rect.high - rect.low;
