@@ -44,18 +44,20 @@ vec3 texel_transmittance(receiver r, vec2 coordinate) {
             transmittance *= 1.0 - fragment_opacity(i);
     return transmittance;
 }
+#else
+vec3 texel_transmittance(receiver r, vec2 coordinate) {
+    float depth;
+    return blocker_at(r, coordinate, depth) ? vec3(0.0) : vec3(1.0);
+}
+#endif
 
-vec3 transmitted_bilinear(receiver r, vec2 coordinate) {
+// Edges fade over half a texel; samples whose texels lie elsewhere (reference.c) smooth them further.
+vec3 transmittance(receiver r, vec2 coordinate) {
     vec2 corner = coordinate - 0.5;
-    vec2 f = fract(corner);
+    vec2 f = clamp(2.0 * fract(corner) - 0.5, 0.0, 1.0);
     return mix(mix(texel_transmittance(r, corner), texel_transmittance(r, corner + vec2(1.0, 0.0)), f.x),
                mix(texel_transmittance(r, corner + vec2(0.0, 1.0)), texel_transmittance(r, corner + 1.0), f.x), f.y);
 }
-#else
-vec3 transmitted_bilinear(receiver r, vec2 coordinate) {
-    return vec3(1.0 - blocked_bilinear(r, coordinate));
-}
-#endif
 
 void main() {
     vec2 coordinate = camera_pixel(gl_FragCoord.xy);
@@ -83,5 +85,5 @@ void main() {
         return;
     }
     receiver r = receiver_create(position, geometric, shading, layer);
-    out_visibility.rgb *= transmitted_bilinear(r, r.center);
+    out_visibility.rgb *= transmittance(r, r.center);
 }

@@ -55,6 +55,18 @@ static void emitter_at(const struct emitter *emitter, int i, int count, uint32_t
     }
 }
 
+/* A caster of few texels is drawn a texel too wide or too narrow, by where it lies among them, and samples of a small
+ * light agree in that. Each sample's texels lie elsewhere within half a texel: the plastic number's lattice, which does
+ * not follow the order of the points. */
+static void shift_texels(struct light_views *views, int i, int map_size) {
+    const double steps[2] = {0.754877666246693, 0.569840290998053};
+    for (int v = 0; v < views->count; v++)
+        for (int axis = 0; axis < 2; axis++) {
+            const double turns = i * steps[axis], texel = 1.0 / ((double)views->views[v].rect[axis + 2] * map_size);
+            views->views[v].rect[axis] += (float)((turns - floor(turns) - 0.5) * texel);
+        }
+}
+
 /* What a light sample sees of the casters: the nearest that is opaque, and all that light shines through. */
 struct sample_maps {
     struct gl_texture opaque;
@@ -103,6 +115,7 @@ static pnb_result draw_sample(struct frame *frame, const struct frame_light *lig
     emitter_at(&light->emitter, i, count, frame->sample, &point, normal);
     light_views_fit(&views, &point, frame->coarse_receivers, frame->coarse_receiver_count, frame->casters,
                     frame->caster_count, light->map_size);
+    shift_texels(&views, i, light->map_size);
     pnb_result result = PNB_OK;
     const bool shadows = views.count > 0 && point.casts_shadow;
     maps->translucent.count = 0;
