@@ -17,6 +17,18 @@ void square_to_disk(float point[2]) {
     point[1] = radius * sinf(angle);
 }
 
+void disk_to_square(float point[2]) {
+    const float x = point[0], y = point[1];
+    const float radius = hypotf(x, y);
+    if (radius == 0.0f)
+        return;
+    const bool wide = fabsf(x) > fabsf(y);
+    const float side = copysignf(radius, wide ? x : y);
+    const float across = side * (4.0f / PI) * atanf(wide ? y / x : x / y);
+    point[0] = wide ? side : across;
+    point[1] = wide ? across : side;
+}
+
 /* To [-1, 1), about 0. In double: of thousands of points, some are closer than what floats tell apart here. */
 static float wrap(double x) {
     return (float)(2.0 * (x + 0.5 - floor(x + 0.5)) - 1.0);
@@ -35,7 +47,7 @@ static void disk_point(int i, int count, float turn, float point[2]) {
 
 /* A disk: Vogel's spiral. A square: the golden-ratio lattice, whose projections on both axes are even, so that straight
  * edges get as many steps as there are points; it is symmetric about the centre. */
-void pattern_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
+static void vogel_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
     if (disk) {
         disk_point(i, count, (float)turn, point);
         return;
@@ -43,6 +55,12 @@ void pattern_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
     const double n = count, t = turn, from_middle = i + 0.5 - 0.5 * n;
     point[0] = wrap((from_middle + 0.618033988749895 * t) / n);
     point[1] = wrap(from_middle * 0.618033988749895 + 0.754877666246693 * t);
+}
+
+void light_point(int i, int count, bool disk, uint32_t turn, float point[2]) {
+    disk_point(i, count, (float)turn, point);
+    if (!disk)
+        disk_to_square(point);
 }
 
 static void grid_point(int i, int side, bool disk, float point[2]) {
@@ -60,7 +78,7 @@ int pattern_fill(enum pattern pattern, int count, bool disk, uint32_t turn, floa
         if (pattern == PATTERN_GRID)
             grid_point(i, side, disk, points[i]);
         else
-            pattern_point(i, count, disk, turn, points[i]);
+            vogel_point(i, count, disk, turn, points[i]);
     }
     if (count % 2 == 1)
         points[count][0] = points[count][1] = 1e30f;
@@ -119,7 +137,7 @@ void pixel_sample(uint32_t index, uint32_t count, float filter_width, float offs
     if (count <= 1)
         return;
     float point[2];
-    pattern_point((int)spread(index, count), (int)count, false, 0, point);
+    vogel_point((int)spread(index, count), (int)count, false, 0, point);
     /* A Blackman-Harris filter of width w is the window over [-w, w] (Cycles' convention). */
     for (int axis = 0; axis < 2; axis++)
         offset[axis] = filter_inverse(0.5f * point[axis] + 0.5f) * 2.0f * filter_width;

@@ -29,14 +29,14 @@ static void emitter_at(const struct emitter *emitter, int i, int count, uint32_t
     *point = *emitter;
     glm_vec4_zero(normal);
     if (emitter->type == PNB_LIGHT_AREA) {
-        pattern_point(i, count, emitter->ellipse, turn, s);
+        light_point(i, count, emitter->ellipse, turn, s);
         glm_vec3_muladds((float *)emitter->half_u, s[0], point->position);
         glm_vec3_muladds((float *)emitter->half_v, s[1], point->position);
         glm_vec3_zero(point->half_u);
         glm_vec3_zero(point->half_v);
         glm_vec4((float *)emitter->frame[2], 1.0f, normal);
     } else if (emitter->type == PNB_LIGHT_SUN) {
-        pattern_point(i, count, true, turn, s);
+        light_point(i, count, true, turn, s);
         vec3 *frame = point->frame;
         glm_vec3_muladds((float *)emitter->frame[0], s[0] * emitter->tan_half_angle, frame[2]);
         glm_vec3_muladds((float *)emitter->frame[1], s[1] * emitter->tan_half_angle, frame[2]);

@@ -25,7 +25,9 @@ bool tool_error(const char *format, ...) {
 
 /* Highest RMSE of techniques on a scene with its own light. HARD and PCF do not know the light's size, so theirs
  * is what the scene makes it, and is kept for changes to be seen. A ceiling is the figure of the quick table on
- * llvmpipe plus a twentieth and 0.002: other OpenGL implementations rasterise a little differently. */
+ * llvmpipe plus a twentieth and 0.002: other OpenGL implementations rasterise a little differently. The quick table's
+ * 100 points of the light are few where only a tip of it rises above the horizon: on sphere, slot and all-lights PCSS errs
+ * by .040, .006 and .009 there, and by .025, .003 and .007 against 32 x 32. */
 static const char *const ceiling_techniques[] = {"HARD", "PCF", "PCSS", "ESM", "ESSM", "MULTILAYER"};
 #define CEILINGS (sizeof ceiling_techniques / sizeof *ceiling_techniques)
 static const struct ceiling {
@@ -35,13 +37,13 @@ static const struct ceiling {
     {"half-plane", {0.152, 0.152, 0.007, 0.147, 0.007, 0.020}},
     {"ball", {0.130, 0.126, 0.030, 0.113, 0.032, 0.017}},
     {"hover", {0.045, 0.035, 0.006, 0.011, 0.005, 0.006}},
-    {"slot", {0.178, 0.167, 0.006, 0.163, 0.008, 0.008}},
+    {"slot", {0.178, 0.167, 0.008, 0.163, 0.009, 0.009}},
     {"discs", {0.171, 0.169, 0.041, 0.158, 0.038, 0.019}},
     {"slats", {0.205, 0.197, 0.067, 0.192, 0.045, 0.023}},
     {"perforated", {0.236, 0.205, 0.018, 0.109, 0.020, 0.026}},
     {"slanted-sheet", {0.224, 0.221, 0.041, 0.213, 0.054, 0.024}},
     {"plane", {0.002, 0.002, 0.002, 0.003, 0.003, 0.002}},
-    {"sphere", {0.091, 0.057, 0.030, 0.069, 0.032, 0.033}},
+    {"sphere", {0.095, 0.065, 0.044, 0.075, 0.045, 0.034}},
     {"box", {0.052, 0.037, 0.011, 0.042, 0.013, 0.010}},
     {"fence", {0.233, 0.119, 0.025, 0.162, 0.023, 0.043}},
     {"stairs", {0.076, 0.055, 0.029, 0.055, 0.025, 0.020}},
@@ -51,7 +53,7 @@ static const struct ceiling {
     {"benchmark", {0.139, 0.107, 0.062, 0.102, 0.062, 0.049}},
     {"terraces", {0.042, 0.037, 0.025, 0.054, 0.025, 0.031}},
     {"grazing-fence", {0.061, 0.057, 0.027, 0.074, 0.025, 0.028}},
-    {"all-lights", {0.020, 0.013, 0.007, 0.013, 0.008, 0.010}},
+    {"all-lights", {0.020, 0.015, 0.011, 0.015, 0.011, 0.010}},
 };
 
 /* 0.3 where none is stored: a grey image is hardly worse. */
