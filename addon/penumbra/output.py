@@ -3,6 +3,7 @@
 
 import atexit
 import os
+import tempfile
 import time
 
 import bpy
@@ -30,15 +31,11 @@ def find_fault(path):
 
 def _find_fault_of_disk(path):
     """Of other formats we see only whether the disk, or a quota, has room for one block more."""
-    probe = path + '.probe'
     try:
-        with open(probe, 'wb') as file:
+        with tempfile.TemporaryFile(dir=os.path.dirname(path), buffering=0) as file:
             file.write(bytes(512))
     except OSError as error:
         return error.strerror
-    finally:
-        if os.path.exists(probe):
-            os.remove(probe)
     return None
 
 
