@@ -68,8 +68,10 @@ float light_cone(vec3 position) {
     float edge = c > light.cone.x ? 1.0 : 0.0, spread = 0.0;
     float t = (c - light.cone.x) / max(width, 1e-12);
     if (radius > 0.0)
-        spread = radius * length(vec3(c * local.xy / (far * light.cone.zw), 1.0 - c * c)) / (far * width);
-    if (spread > 0.01)
+        spread = min(radius * length(vec3(c * local.xy / (far * light.cone.zw), 1.0 - c * c)) / (far * width), 1e3);
+    if (c <= 0.0) // where no view of the map looks
+        edge = 0.0;
+    else if (spread > 0.01)
         edge = (smooth_integral(t + 0.978148 * spread) - smooth_integral(t - 0.669128 * spread) +
                 smooth_integral(t + 0.669128 * spread) - smooth_integral(t - 0.978148 * spread)) / (3.294552 * spread);
     else if (width > 0.0)
