@@ -48,15 +48,14 @@ static void overlapping_occluders(void) {
     }
 }
 
-/* Root mean square of the second difference along a scanline across a wide penumbra on a plane. In the truth it is all
- * but 0; interpolation between texels bends at each of them. */
-static double texel_structure(const char *technique, double pyramid, double lookups) {
+/* Root mean square of the second difference along a scanline across a wide penumbra on a plane. In theory it is 0, for the
+ * edge is parallel to the light's side; interpolation between texels bends at each of them. */
+static double texel_structure(double pyramid, double lookups) {
     struct test_scene *test = quality_scene("half-plane", TEST_LIGHT_RECTANGLE, 2, NAN);
-    pnb_settings settings = quality_scene_settings(technique, test, 360);
+    pnb_settings settings = quality_scene_settings("MULTILAYER", test, 360);
     const pnb_value values[] = {{"pyramid", pyramid}, {"lookups", lookups}};
     settings.values = values;
-    settings.value_count = lookups > 0 ? 2u : 0u;
-    settings.light_samples = 32;
+    settings.value_count = 2;
     const uint32_t row[4] = {0, settings.height / 2, settings.width, 1};
     memcpy(settings.crop, row, sizeof row);
     struct render render = quality_render(test_scene_get(test), &settings);
@@ -75,15 +74,13 @@ static double texel_structure(const char *technique, double pyramid, double look
 }
 
 static void y_map_has_no_texels(void) {
-    const double truth = texel_structure("REFERENCE", 0, 0);
     for (int lookups = 1; lookups <= 2; lookups++) {
-        const double mip = texel_structure("MULTILAYER", 0, lookups), y = texel_structure("MULTILAYER", 1, lookups);
-        printf("second difference in a wide penumbra, %d lookups a side: MIP map %.5f, Y-map %.5f, REFERENCE %.5f\n",
-               lookups, mip, y, truth);
+        const double mip = texel_structure(0, lookups), y = texel_structure(1, lookups);
+        printf("second difference in a wide penumbra, %d lookups a side: MIP map %.5f, Y-map %.5f\n", lookups, mip,
+               y);
         /* The stack's texels have at most half the width of the MIP map's there. Bends are then half as strong and
          * twice as many. */
         CHECK_AT_MOST(y, mip * sqrt(0.5));
-        CHECK(truth < y);
     }
 }
 
