@@ -3,17 +3,14 @@
 // in the level whose filter is as wide as the kernel of that depth.
 #include "common_min_max.glsl"
 #include "common_fragments.glsl"
+#include "common_accumulation.glsl"
 #include "common_horizon.glsl"
-#ifdef ANTIALIAS
 #include "common_footprint.glsl"
-#endif
 
 uniform ivec4 levels[14];        // first head, texels per side, log2 of a texel's width, border of a stack or -1
 uniform float filter_widths[14]; // of the box with the variance of the level's filter, in texels of the map
-uniform int level_count, p_lookups;
+uniform int level_count, p_lookups, p_antialiasing;
 uniform int is_opaque;           // 1: no caster lets light through
-
-const int ADD = 0, MULTIPLY = 1, MAXIMUM = 2;
 
 // What the fragments of one level hide between the depths of two levels.
 struct share {
@@ -53,12 +50,6 @@ OPACITY blend(share lower, share upper) {
     return mix(lower.opacity, upper.opacity, weight.y > 0.0 ? weight.x / weight.y : 0.0);
 }
 
-OPACITY combine(OPACITY a, OPACITY b) {
-    if (ACCUMULATION == ADD)
-        return min(a + b, OPACITY(1.0));
-    return ACCUMULATION == MULTIPLY ? 1.0 - (1.0 - a) * (1.0 - b) : max(a, b);
-}
-
 // Side of the square with the kernel's area, in texels per unit of kernel_scale.
 float kernel_side(receiver r) {
     float area = 4.0 * abs(r.kernel[0].x * r.kernel[1].y - r.kernel[0].y * r.kernel[1].x);
@@ -67,12 +58,10 @@ float kernel_side(receiver r) {
 
 // What kernels are at least as wide as, in texels: with shadow anti-aliasing the longer side of a pixel.
 float least_width(receiver r) {
-#ifdef ANTIALIAS
+    if (p_antialiasing == 0)
+        return 0.0;
     mat2 footprint = receiver_footprint(r);
     return max(length(footprint[0]), length(footprint[1]));
-#else
-    return 0.0;
-#endif
 }
 
 // Light-space depth at which the kernel is so wide; none for a width that no kernel has.
@@ -212,10 +201,10 @@ OPACITY hidden(receiver r, vec2 aside, float side, float least, int last) {
         share here, upper;
         look_up_bilinear(r, center, level, depths_of_level(r, side, least, level), side, here, upper);
         if (level > 0)
-            opacity = combine(opacity, blend(lower, upper));
+            opacity = accumulate(opacity, blend(lower, upper));
         lower = here;
     }
-    return combine(opacity, blend(lower, nothing()));
+    return accumulate(opacity, blend(lower, nothing()));
 }
 
 // The filters of one level differ from the emitter in shape and forget which of the casters they blur overlap. So the

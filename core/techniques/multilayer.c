@@ -149,11 +149,7 @@ static const struct parameter parameters[] = {
     {0}};
 
 static const char *multilayer_defines(const double *values) {
-    static const char *const antialiased[] = {"#define ACCUMULATION 0\n#define ANTIALIAS\n",
-                                              "#define ACCUMULATION 1\n#define ANTIALIAS\n",
-                                              "#define ACCUMULATION 2\n#define ANTIALIAS\n"};
-    const int accumulation = (int)values[LOOKUP_ACCUMULATION];
-    return values[ANTIALIASING] > 0.0 ? antialiased[accumulation] : accumulation_define(accumulation);
+    return accumulation_define((int)values[LOOKUP_ACCUMULATION]);
 }
 
 /* Side of the square with the emitter's area. */
