@@ -15,7 +15,6 @@ struct receiver {
     vec2 slope;       // height of the receiver's tangent plane: is_blocker
     float level;
     float plane;      // what the height of a blocker must exceed
-    float bend;       // difference of the geometric and the shading normal: how far a surface meant smooth turns
     float limit;      // light-space depth a blocker must be before
     float texel_size; // larger side of a texel in q
     // Its view, out of the uniform block once and not at every tap:
@@ -70,13 +69,13 @@ void receiver_set_bias(inout receiver r, float kernel_radius) {
     float scale = r.texel_size * (perspective ? r.position.z : 1.0);
     float facing = abs(perspective ? dot(r.normal, normalize(r.position)) : r.normal.z);
     float rounding = r.depth_span + abs(r.position.z);
-    float rise = (0.15 + min(2.0 * r.bend, 0.5)) / max(facing, 0.5);
+    float rise = (0.15 + min(2.0 * length(r.normal - r.shading), 0.5)) / max(facing, 0.5);
     r.plane = dot(r.normal, r.position) + scale * (rise + 5e-4 * kernel_radius) + 2e-6 * rounding;
     r.limit = r.position.z - 1e-6 * rounding;
 }
 
 // A receiver of light-space position and normal, without its kernel.
-receiver receiver_on_map(vec3 position, vec3 normal, float bend, int layer) {
+receiver receiver_on_map(vec3 position, vec3 normal, vec3 shading, int layer) {
     receiver r;
     light_view view = LIGHT_VIEW(layer);
     r.layer = layer;
@@ -85,12 +84,12 @@ receiver receiver_on_map(vec3 position, vec3 normal, float bend, int layer) {
     r.depth_span = view.far_depth - view.near_depth;
     r.texel_size = view.texel;
     r.position = position;
-    r.normal = r.shading = normal;
+    r.normal = normal;
+    r.shading = shading;
     vec2 q = is_perspective() ? position.xy / position.z : position.xy;
     vec2 scale = view.rect.zw * vec2(r.map_size); // texels per unit of q
     r.center = (q - view.rect.xy) * scale;
     r.spread = vec2(0.0);
-    r.bend = bend;
     // dot(normal.xy, q) at the centre of texel t is dot(slope, t) + level.
     r.slope = normal.xy / scale;
     r.level = dot(r.slope, vec2(0.5)) + dot(normal.xy, view.rect.xy) + (is_perspective() ? normal.z : 0.0);
@@ -102,8 +101,7 @@ receiver receiver_create(vec3 world_position, vec3 geometric, vec3 shading, int 
     light_view view = LIGHT_VIEW(layer);
     mat3 to_light = mat3(view.from_world);
     receiver r = receiver_on_map((view.from_world * vec4(world_position, 1.0)).xyz, to_light * geometric,
-                                 length(geometric - shading), layer);
-    r.shading = to_light * shading;
+                                 to_light * shading, layer);
     vec2 q = is_perspective() ? r.position.xy / r.position.z : r.position.xy;
     vec2 scale = view.rect.zw * vec2(r.map_size);
     mat2 axes = emitter_axes(r.position, q, to_light);

@@ -79,7 +79,7 @@ receiver tile_receiver(tile t, region bounds, int layer) {
     mat3 to_light = mat3(view.from_world);
     vec2 middle = 0.5 * (bounds.minimum.xy + bounds.maximum.xy);
     receiver r = receiver_on_map(vec3(middle * (is_perspective() ? bounds.maximum.z : 1.0), bounds.maximum.z),
-                                 to_light * t.normal.xyz, 0.0, layer);
+                                 to_light * t.normal.xyz, to_light * t.normal.xyz, layer);
     vec2 scale = view.rect.zw * vec2(r.map_size);
     mat2 axes = widest_axes(max(abs(bounds.minimum.xy), abs(bounds.maximum.xy)), to_light);
     r.kernel = mat2(axes[0] * scale, axes[1] * scale);
