@@ -129,7 +129,8 @@ static pnb_result draw_pixels(struct frame *frame, const struct frame_light *lig
     gl->Disable(GL_BLEND);
     bind_gbuffer(renderer, program);
     bind_steady(frame, program);
-    bind_subsampling(frame, program);
+    if (coarse)
+        bind_subsampling(frame, program);
     bind_technique(frame, light, program);
     draw_over(frame, program, tiles, true);
     timer_end(&renderer->timer, gl_texture_bytes(output));

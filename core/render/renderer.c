@@ -119,6 +119,10 @@ static bool uses_tiles(const struct frame_light *light) {
     return technique_skips(light->technique, light->parameters);
 }
 
+static bool subsamples(const struct frame_light *light) {
+    return technique_subsamples(light->technique, light->parameters);
+}
+
 static bool some_light(const struct frame *frame, bool (*has)(const struct frame_light *light)) {
     for (uint32_t i = 0; i < frame->scene->light_count; i++)
         if (has(&frame->lights[i]))
@@ -187,9 +191,6 @@ static pnb_result draw_light(struct frame *frame, uint32_t index, bool first) {
     /* A technique that adds up many samples needs single precision; one that writes its result does not. */
     const GLenum format = light->technique->draw ? GL_RGBA32F : GL_RGBA16F;
     result = gl_texture_ensure(frame->gl, &renderer->visibility, format, frame->width, frame->height, 0, 1);
-    if (result != PNB_OK)
-        return result;
-    result = ensure_subsampling(frame, technique_subsamples(light->technique, light->parameters));
     if (result != PNB_OK)
         return result;
     light_block_upload(renderer, &light->emitter, &light->views);
@@ -296,6 +297,7 @@ static pnb_result draw_frame(struct frame *frame) {
     frame->reuses = can_reuse(frame);
     /* Memory first: an image that is too large must not be drawn for a minute before it fails. */
     if ((result = pass_create_images(frame)) != PNB_OK || (result = pass_prepare_sums(frame)) != PNB_OK ||
+        (result = ensure_subsampling(frame, some_light(frame, subsamples))) != PNB_OK ||
         (result = gpu_scene_update(frame->renderer->scene, frame)) != PNB_OK ||
         (result = find_receivers(frame)) != PNB_OK)
         return result;
