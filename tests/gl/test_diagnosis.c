@@ -3,6 +3,8 @@
  * geometry says. A plate lies below a light and above a floor, all of them parallel. */
 #include "support.h"
 
+#include "scenes/shapes.h"
+
 #include <math.h>
 
 #define WIDTH  60
@@ -20,13 +22,6 @@ struct stage {
 };
 
 static void stage_make(struct stage *stage, pnb_light_type type) {
-    static const float positions[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
-    static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
-    pnb_mesh_desc desc = PNB_INIT(pnb_mesh_desc);
-    desc.vertex_count = desc.corner_count = 4;
-    desc.triangle_count = 2;
-    desc.positions.data = positions;
-    desc.triangles.data = triangles;
     *stage = (struct stage){
         .instances = {{.struct_size = sizeof(pnb_instance), .matrix = {3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
                       {.struct_size = sizeof(pnb_instance),
@@ -50,7 +45,10 @@ static void stage_make(struct stage *stage, pnb_light_type type) {
                              .matrix = IDENTITY_AT(0, 0, 5)}},
         .settings = {.struct_size = sizeof(pnb_settings), .width = WIDTH, .height = HEIGHT, .shadow_map_size = 512},
     };
-    CHECK_RESULT(pnb_mesh_create(&desc, &stage->square), PNB_OK);
+    struct shape square = {0};
+    shape_rectangle(&square, -1, -1, 1, 1, 0);
+    stage->square = shape_finish(&square, "square");
+    CHECK(stage->square != NULL);
     stage->instances[0].mesh = stage->instances[1].mesh = stage->square;
     stage->scene.instances = stage->instances;
     stage->scene.lights = &stage->light;
