@@ -58,6 +58,9 @@ class Borders(SceneTest):
 class SharedFolder(SceneTest):
     """Placeholders let several machines render one animation."""
     FRAMES = 40
+    # Blender looks for the picture and then makes its placeholder. Processes that look in the same instant, as these do
+    # when they start together, both render the frame. Without placeholders nearly all frames are rendered twice.
+    TAKEN_TWICE = 1
 
     def start(self, blend, folder):
         return subprocess.Popen(blender_command(blend, '-o', output(folder) + '/', '-F', 'PNG', '-a'),
@@ -82,8 +85,9 @@ class SharedFolder(SceneTest):
         alone = self.saved(self.start(blend, "alone"))
         self.assertEqual(len(alone), self.FRAMES)
         both = [self.saved(process) for process in [self.start(blend, "together") for _ in range(2)]]
-        self.assertEqual(sorted(both[0] + both[1]), sorted(alone))
         print("frames of each process:", [len(names) for names in both])
+        self.assertEqual(set(both[0] + both[1]), set(alone))
+        self.assertLessEqual(len(both[0] + both[1]), self.FRAMES + self.TAKEN_TWICE)
         for name in alone:
             contents = []
             for folder in ("alone", "together"):
