@@ -389,6 +389,10 @@ typedef struct pnb_value {
     double value;
 } pnb_value;
 
+#define PNB_DEFAULT_SAMPLES       1
+#define PNB_DEFAULT_MAP_SIZE      1024
+#define PNB_DEFAULT_LIGHT_SAMPLES 16
+
 typedef struct pnb_settings {
     uint32_t struct_size;
     uint32_t flags;              /* enum pnb_settings_flags */
@@ -398,10 +402,11 @@ typedef struct pnb_settings {
     uint32_t width, height;      /* pixels of the full image, 1 .. max_texture_size */
     uint32_t crop[4];            /* x, y, width, height, from the lower left: only these pixels are made, and they
                                   * equal those of the full image. Width 0: the full image */
-    uint32_t samples;            /* anti-aliasing samples per pixel, 1..4096, 0: 1. One sample is at pixel centres */
+    uint32_t samples;            /* anti-aliasing samples per pixel, 1..4096, 0: PNB_DEFAULT_SAMPLES. One sample is at
+                                  * pixel centres */
     float filter_width;          /* pixels, of the Blackman-Harris filter the samples follow, below 100; 0: 1.5 */
-    uint32_t shadow_map_size;    /* texels per side, 16..max_texture_size; 0: 1024 */
-    uint32_t light_samples;      /* REFERENCE: N for N x N light samples, 1..64; 0: 16 */
+    uint32_t shadow_map_size;    /* texels per side, 16..max_texture_size; 0: PNB_DEFAULT_MAP_SIZE */
+    uint32_t light_samples;      /* REFERENCE: N for N x N light samples, 1..64; 0: PNB_DEFAULT_LIGHT_SAMPLES */
     uint32_t passes;             /* enum pnb_pass; 0: all but LIGHT_SHADOWS */
 } pnb_settings;
 

@@ -145,10 +145,10 @@ pnb_result settings_resolve(const pnb_settings *from, uint32_t max_texture_size,
         .flags = from->flags,
         .width = from->width,
         .height = from->height,
-        .samples = or_default(from->samples, 1),
+        .samples = or_default(from->samples, PNB_DEFAULT_SAMPLES),
         .filter_width = resolve_filter_width(from->filter_width, messages),
-        .shadow_map_size = or_default(from->shadow_map_size, 1024),
-        .light_samples = or_default(from->light_samples, 16),
+        .shadow_map_size = or_default(from->shadow_map_size, PNB_DEFAULT_MAP_SIZE),
+        .light_samples = or_default(from->light_samples, PNB_DEFAULT_LIGHT_SAMPLES),
         .passes = or_default(from->passes, DEFAULT_PASSES),
     };
     if ((result = check_bits("flags", to->flags, PNB_SETTINGS_FILM_TRANSPARENT | PNB_SETTINGS_PROGRESSIVE)) != PNB_OK ||

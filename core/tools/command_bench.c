@@ -298,19 +298,24 @@ static void write_technique(struct json *json, struct technique_times *times, ui
     json_close(json, '{');
 }
 
+/* What is rendered with: fields that the capture leaves open are at their defaults. */
+static void write_settings(struct json *json, const pnb_settings *settings) {
+    json_open(json, "settings", '{');
+    json_count(json, "width", settings->width);
+    json_count(json, "height", settings->height);
+    json_count(json, "samples", settings->samples ? settings->samples : PNB_DEFAULT_SAMPLES);
+    json_count(json, "shadow_map_size", settings->shadow_map_size ? settings->shadow_map_size : PNB_DEFAULT_MAP_SIZE);
+    json_count(json, "light_samples", settings->light_samples ? settings->light_samples : PNB_DEFAULT_LIGHT_SAMPLES);
+    json_close(json, '{');
+}
+
 static void write_report(struct json *json, const struct bench_options *options, const struct replay *replay,
                          struct technique_times *all) {
     json_open(json, NULL, '{');
     json_string(json, "penumbra", pnb_version());
     json_string(json, "capture", options->capture);
     write_machine(json, replay);
-    json_open(json, "settings", '{');
-    json_count(json, "width", replay->settings.width);
-    json_count(json, "height", replay->settings.height);
-    json_count(json, "samples", replay->settings.samples);
-    json_count(json, "shadow_map_size", replay->settings.shadow_map_size);
-    json_count(json, "light_samples", replay->settings.light_samples);
-    json_close(json, '{');
+    write_settings(json, &replay->settings);
     json_count(json, "runs", options->runs);
     json_count(json, "warmup", options->warmup);
     json_number(json, "context_ms", replay->context_ms);

@@ -179,9 +179,12 @@ bool replay_settings(const struct replay *replay, const struct replay_options *o
     *settings = replay->settings;
     settings->technique = technique_id(technique);
     uint32_t count = 0;
+    if (replay->settings.value_count > MAX_VALUES - MAX_ASSIGNMENTS)
+        return tool_error("the capture sets %u parameters, at most %d can be replayed", replay->settings.value_count,
+                          MAX_VALUES - MAX_ASSIGNMENTS);
     /* The capture's values belong to its own technique or to the one they name; the command line's come later and win.
      */
-    for (uint32_t i = 0; i < replay->settings.value_count && count < MAX_ASSIGNMENTS; i++)
+    for (uint32_t i = 0; i < replay->settings.value_count; i++)
         if (technique == replay->technique || strchr(replay->settings.values[i].name, '.'))
             values[count++] = replay->settings.values[i];
     for (uint32_t i = 0; i < options->assignment_count; i++) {

@@ -9,7 +9,7 @@
 
 #define MAX_ASSIGNMENTS 64
 /* The capture's and the command line's. */
-#define MAX_VALUES (2 * MAX_ASSIGNMENTS)
+#define MAX_VALUES (8 * MAX_ASSIGNMENTS)
 
 /* What `render` and `bench` let the user change; zero keeps the capture's. */
 struct replay_options {

@@ -242,6 +242,8 @@ def test_bench_reports_every_technique():
         report = json.load(file)
     assert [row['id'] for row in report['techniques']] == [row['id'] for row in info()['techniques']]
     assert report['runs'] == 3 and report['machine']['renderer'] and report['settings']['width'] == 96
+    settings = report['settings']
+    assert (settings['samples'], settings['shadow_map_size'], settings['light_samples']) == (1, 1024, 2)
     for row in report['techniques']:
         assert row['id'] in output and row['bytes'] > 0 and row['passes']
         for times in [row['wall_ms'], *(item[key] for item in row['passes'] for key in ('gpu_ms', 'cpu_ms'))]:
