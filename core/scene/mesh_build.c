@@ -309,6 +309,7 @@ static pnb_result build_warning(struct build *build) {
     if (build->bad_uvs > 0) {
         text_add(text, "%s%" PRIu32 " non-finite uvs taken as 0", dropped > 0 ? "; " : "", build->bad_uvs);
     }
+    text_make_line(text);
     build->mesh->warning = memory_string(text, "");
     return build->mesh->warning ? PNB_OK : PNB_ERROR_OUT_OF_MEMORY;
 }
