@@ -260,7 +260,7 @@ static pnb_result copy_lights(const pnb_scene *from, struct messages *messages, 
             return PNB_ERROR_OUT_OF_MEMORY;
         }
         if (strcmp(light->name, name) != 0) {
-            messages_add(messages, "light '%s': another light has this name; its pass is 'Shadow.%s'", name,
+            messages_add(messages, "light '%s': another light has this name; this one is called '%s'", name,
                          light->name);
         }
     }

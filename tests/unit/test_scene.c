@@ -380,7 +380,7 @@ static void light_names_are_unique(void **state) {
     assert_string_equal(scene->lights[1].name, "Key.001");
     assert_string_equal(scene->lights[2].name, "Key.001.001");
     assert_string_equal(scene->lights[3].name, "Key.002");
-    assert_told(fixture, "light 'Key': another light has this name; its pass is 'Shadow.Key.001'");
+    assert_told(fixture, "light 'Key': another light has this name; this one is called 'Key.001'");
 }
 
 static void sixty_four_lights_are_allowed(void **state) {
