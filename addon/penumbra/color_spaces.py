@@ -3,6 +3,8 @@
 
 from typing import NamedTuple
 
+from .names import name_of
+
 
 class Space(NamedTuple):
     to_rec709: tuple    # linear RGB to linear Rec.709, by rows; None: the same primaries
@@ -33,7 +35,7 @@ def decode(pixels, channels, image, warnings):
         return not (image.is_float or settings.is_data)
     space = _SPACES.get(settings.name)
     if space is None:
-        warnings.append(f"image '{image.name}': colour space {settings.name} is taken for sRGB")
+        warnings.append(f"image '{name_of(image)}': colour space {settings.name} is taken for sRGB")
         space = _SPACES['sRGB']
     if space.to_rec709 is None and space.gamma in (0.0, 1.0):
         return space.gamma == 0.0

@@ -15,6 +15,8 @@ AREA_RADIANCE_PER_POWER = 1.0 / pi if BLENDER_4 else 1.0 / 4.0
 # Before 4.0 a spot is a flat disk across its axis, which emits by the cosine, and the object's scale does nothing.
 SPOT_IS_FLAT_DISK = not BLENDER_4
 SPOT_IS_SCALED = BLENDER_4
+# The axes that a light needs: Cycles takes one whose scale is 0 for dark.
+AXES_THAT_LIGHT = {'POINT': (), 'SUN': (2,), 'SPOT': (0, 1, 2) if BLENDER_4 else (2,), 'AREA': (0, 1, 2) if BLENDER_4 else (0, 1)}
 # Before 4.0 Cycles takes a sun for a flat disk at distance 1, whose rim gives less than its centre.
 SUN_IS_FLAT_DISK = not BLENDER_4
 
@@ -94,6 +96,11 @@ def light_casts_shadow(light):
     """Blender 3.4 has one switch per engine: either one turns the shadow off."""
     cycles = getattr(light, 'cycles', None)
     return light.use_shadow and getattr(cycles, 'cast_shadow', True)
+
+
+def light_is_portal(light):
+    """Whether it only shows Cycles where the world's light comes in."""
+    return light.type == 'AREA' and getattr(getattr(light, 'cycles', None), 'is_portal', False)
 
 
 def light_color(light):
@@ -226,9 +233,12 @@ def missing_from(block):
     path = reference.library.filepath
     if hasattr(reference, 'is_missing'):
         return path if reference.is_missing else None
-    is_empty = not len(reference.vertices) if isinstance(reference, bpy.types.Mesh) else \
-        isinstance(reference, bpy.types.Object) and reference.type == 'EMPTY'
+    is_empty = not any(getattr(reference, name, None) for name in _CONTENTS)
     return path if is_empty and not os.path.exists(bpy.path.abspath(path)) else None
+
+
+# What a data-block has inside, by its kind.
+_CONTENTS = ('data', 'vertices', 'splines', 'points', 'elements', 'objects', 'nodes', 'node_tree', 'has_data')
 
 
 def light_linking(ob):

@@ -9,6 +9,7 @@ from ctypes import byref, c_void_p
 import bpy
 
 from . import capi, command_line, device, export, passes, report, settings, statistics, viewport
+from .names import name_of, one_line
 
 # How long a wait for the library may delay a cancel, in milliseconds.
 POLL_MS = 20
@@ -68,10 +69,10 @@ class PenumbraEngine(bpy.types.RenderEngine):
             self._fail(error)
 
     def _fail(self, error):
-        message = str(error)
+        message = one_line(str(error))
         if not isinstance(error, (RenderFailed, capi.Error, command_line.UsageError)):
             traceback.print_exc()
-            message = f"Unexpected {type(error).__name__}: {error}"
+            message = f"Unexpected {type(error).__name__}: {message}"
         # The report makes `blender -b` exit with an error and write no file, error_set shows in the image editor.
         self.report({'ERROR'}, message)
         self.error_set(message)
@@ -79,7 +80,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
     def _render(self, depsgraph):
         scene = depsgraph.scene_eval
         if scene.camera is None:
-            raise RenderFailed(f"Scene '{scene.name}' has no camera")
+            raise RenderFailed(f"Scene '{name_of(scene)}' has no camera")
         self.update_stats("", "Exporting")
         with export.SceneExport(depsgraph) as exported:
             views = [view.name for view in scene.render.views if view.use] if scene.render.use_multiview else [""]
@@ -116,7 +117,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
             context = device.context(settings.backend())
             capi.library().render_start(context, byref(exported.scene), byref(values), byref(job))
             try:
-                done = self._wait(job, exported.warnings)
+                done = self._wait(job, exported)
                 if done:
                     passes.fill_layer(result.layers[0], depsgraph.view_layer, job, *values.crop[2:])
                     timings = list(_timings(job))
@@ -134,7 +135,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
             return camera.matrix_world.normalized(), 0.0
         return self.camera_model_matrix(camera), self.camera_shift_x(camera)
 
-    def _wait(self, job, warnings):
+    def _wait(self, job, exported):
         """Shows progress until the job ends; False if the user cancelled it."""
         library = capi.library()
         progress = capi.Progress()
@@ -154,8 +155,8 @@ class PenumbraEngine(bpy.types.RenderEngine):
                 device.close()
             raise
         self.update_progress(1.0)
-        warnings.extend(library.job_message(job, index).decode(errors='replace')
-                        for index in range(library.job_message_count(job)))
+        for index in range(library.job_message_count(job)):
+            exported.add_message(library.job_message(job, index).decode(errors='replace'))
         return True
 
     def is_cancelled(self):

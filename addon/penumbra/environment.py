@@ -4,6 +4,7 @@
 from math import pi, sin
 
 from . import color_spaces, textures
+from .names import name_of
 
 # Rows and columns that are looked at; a mean needs no more.
 _SIDE = 256
@@ -13,7 +14,7 @@ def mean(image, warnings):
     """Linear mean over the sphere: rows of an equirectangular picture count by the sine of their angle to the pole."""
     pixels = textures.pixels_of(image)
     if pixels is None:
-        warnings.append(f"image '{image.name}' is missing ({image.filepath or 'no file'})")
+        warnings.append(f"image '{name_of(image)}' is missing ({image.filepath or 'no file'})")
         return [1.0, 0.0, 1.0]
     width, height = image.size
     channels = image.channels

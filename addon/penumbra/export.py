@@ -5,10 +5,13 @@ from array import array
 from ctypes import byref, c_uint32
 from typing import NamedTuple
 
+import bpy
+
 from . import camera, capi, compat, lights, materials, nodes, settings, textures
 from .geometry import MeshStore
 from .links import LightLinks
 from .mesh import NO_NEEDS
+from .names import name_of
 
 
 class ExportedMaterial(NamedTuple):
@@ -49,13 +52,17 @@ class SceneExport:
         self._materials = {}        # address: ExportedMaterial; None: no material
         self._slots = {}            # tuple of material indices: first slot
         self._material_list, self._slot_list, self._lights = [], [], []
+        self._owners = {}           # what the library gives no name in its messages: how ours call it
         self._view_layer = depsgraph.view_layer
         override, world = compat.view_layer_overrides(depsgraph.view_layer_eval)
         self._override = override
         try:
+            self._check_libraries(depsgraph)
             self._add_instances(depsgraph)
             self._set_arrays()
             self._set_world(world or depsgraph.scene_eval.world)
+            if depsgraph.scene_eval.render.use_motion_blur:
+                self.warnings.append(f"scene '{name_of(depsgraph.scene)}': motion blur is not supported")
         except BaseException:
             self.close()
             raise
@@ -74,7 +81,13 @@ class SceneExport:
         self._textures = {}
 
     def set_camera(self, ob, matrix, shift_x, width, height, aspect):
+        self._owners['camera'] = f"camera '{name_of(ob)}'"
         camera.fill_camera(self.scene.camera, ob, matrix, shift_x, width, height, aspect, self.warnings)
+
+    def add_message(self, text):
+        """One of the library."""
+        owner, colon, rest = text.partition(':')
+        self.warnings.append(self._owners.get(owner, owner) + colon + rest)
 
     def use_own_techniques(self, used, share=1.0):
         """Whether lights have the techniques of their own, or all the settings'; share: of the size of their maps."""
@@ -117,7 +130,6 @@ class SceneExport:
         ob, parent = instance.object, instance.parent
         data = ob.data
         if data is None:
-            self._check_library("object", ob)   # what stands for a missing one is an Empty
             return ()
         key = ob.as_pointer(), data.as_pointer(), parent and parent.as_pointer()
         templates = self._templates.get(key)
@@ -128,20 +140,14 @@ class SceneExport:
         return templates
 
     def _make_templates(self, ob):
-        self._check_library("data", ob.original.data)
         slots = [self._material(slot.material) for slot in ob.material_slots]
         mesh = self._meshes.of(ob, tuple(material.needs for material in slots))
         indices = tuple(material.index for material in slots)
         if mesh:
             triangles = len(ob.data.loop_triangles) if ob.type == 'MESH' else 0
-            yield Template(self._instance(ob, ob.name, mesh, indices), False, triangles)
+            yield Template(self._instance(ob, name_of(ob), mesh, indices), False, triangles)
         for name, mesh, slot in self._meshes.hair(ob):
             yield Template(self._instance(ob, name, mesh, indices[min(slot, len(indices) - 1):][:1]), True, 0)
-
-    def _check_library(self, kind, block):
-        path = compat.missing_from(block)
-        if path:
-            self.warnings.append(f"{kind} '{block.name}': it is missing from the library '{path}'")
 
     def _instance(self, ob, name, mesh, slots):
         return capi.Instance(mesh=mesh, name=name.encode(), flags=self._flags(ob), first_slot=self._first_slot(slots),
@@ -161,7 +167,7 @@ class SceneExport:
     # ---- Lights ----
 
     def _add_light(self, ob, parent, matrix):
-        if not ob.visible_diffuse:
+        if not ob.visible_diffuse or not lights.gives_light(ob.data, name_of(ob), matrix, self.warnings):
             return
         light = capi.Light()
         lights.fill_light(light, ob, matrix, self.warnings)
@@ -191,7 +197,10 @@ class SceneExport:
         if key not in self._materials:
             target = capi.Material(base_color=tuple(materials.GREY))
             needs = materials.fill_material(target, material, self._texture, self.warnings) if material else NO_NEEDS
-            self._materials[key] = ExportedMaterial(len(self._material_list), needs)
+            index = len(self._material_list)
+            self._materials[key] = ExportedMaterial(index, needs)
+            if material:
+                self._owners[f'material {index}'] = f"material '{name_of(material)}'"
             self._material_list.append(target)
         return self._materials[key]
 
@@ -203,6 +212,14 @@ class SceneExport:
         return self._textures[key][0]
 
     # ---- The rest ----
+
+    def _check_libraries(self, depsgraph):
+        """Of all that the view layer needs. What stands for a missing data-block is empty."""
+        for block in depsgraph.ids if bpy.data.libraries else ():
+            path = compat.missing_from(block)
+            if path:
+                kind = block.bl_rna.name.lower()
+                self.warnings.append(f"{kind} '{name_of(block)}': it is missing from the library '{path}'")
 
     def _set_arrays(self):
         scene = self.scene
@@ -219,12 +236,10 @@ class SceneExport:
 
     def _set_world(self, world):
         if world is None:
-            color = [0.0] * 3
-        elif compat.uses_nodes(world):
-            color = nodes.emission(world.node_tree, f"world '{world.name}'", self.warnings)
-        else:
-            color = world.color
-        self.scene.world_color[:] = color
+            return
+        self._owners['world'] = owner = f"world '{name_of(world)}'"
+        uses_nodes = compat.uses_nodes(world)
+        self.scene.world_color[:] = nodes.emission(world.node_tree, owner, self.warnings) if uses_nodes else world.color
 
 
 def write_capture(path, scene, settings):

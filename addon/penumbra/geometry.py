@@ -5,6 +5,7 @@ import bpy
 
 from . import capi, strands, textures
 from .mesh import NO_NEEDS, create_mesh
+from .names import name_of
 
 _POINTS = {'CURVES': strands.create_curves, 'POINTCLOUD': strands.create_points}
 
@@ -24,7 +25,7 @@ class MeshStore:
         """Handle of the object's mesh, for materials with these needs; None without one. Curves, surfaces, texts and
         metaballs come as instances of their evaluated mesh beside themselves."""
         if ob.type == 'VOLUME':
-            self._warnings.append(f"object '{ob.name}': a volume cannot be rendered")
+            self._warnings.append(f"object '{name_of(ob)}': a volume cannot be rendered")
         if ob.type != 'MESH' and ob.type not in _POINTS:
             return None
         if all(need == NO_NEEDS for need in needs):
@@ -41,11 +42,11 @@ class MeshStore:
         for system in strands.hair_systems(ob):
             handle = self._keep(strands.create_hair(ob, system, self._is_render, self._warnings))
             if handle:
-                yield f"{ob.name}, {system.name}", handle, strands.hair_slot(system)
+                yield f"{name_of(ob)}, {name_of(system)}", handle, strands.hair_slot(system)
 
     def _make(self, ob, needs):
         if ob.type in _POINTS:
-            return self._keep(_POINTS[ob.type](ob.data, ob.name, self._warnings))
+            return self._keep(_POINTS[ob.type](ob.data, name_of(ob), self._warnings))
         if self._kept is not None:
             return self._kept.mesh(ob, needs, self._create)
         return self._keep(self._create(ob, needs))
@@ -57,9 +58,9 @@ class MeshStore:
 
     def _create(self, ob, needs):
         if not ob.data.is_editmode:
-            return create_mesh(ob.data, ob.name, needs, self._use_pointers, self._warnings)
+            return create_mesh(ob.data, name_of(ob), needs, self._use_pointers, self._warnings)
         try:
-            return create_mesh(ob.to_mesh(), ob.name, needs, self._use_pointers, self._warnings)
+            return create_mesh(ob.to_mesh(), name_of(ob), needs, self._use_pointers, self._warnings)
         finally:
             ob.to_mesh_clear()
 
@@ -99,7 +100,7 @@ class Kept:
         """`needs`: see mesh.Needs."""
         data = ob.data
         key = data.as_pointer(), needs
-        content = (ob.name_full, len(data.vertices), len(data.loops), len(data.polygons))
+        content = (name_of(ob, 'name_full'), len(data.vertices), len(data.loops), len(data.polygons))
         kept = self._meshes.get(key)
         if kept is None or kept[0] != content or self._may_differ(ob):
             self._drop(key)

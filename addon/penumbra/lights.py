@@ -4,21 +4,33 @@
 from math import pi, sqrt, tan
 
 from . import capi, compat, nodes, props
+from .names import name_of
 
 SMALLEST_MAP = 16   # texels per side that the library allows
 _TYPES = {'AREA': capi.AREA, 'POINT': capi.POINT, 'SPOT': capi.SPOT, 'SUN': capi.SUN}
 
 
+def gives_light(light, name, matrix, warnings):
+    """False for what Cycles takes for dark."""
+    if compat.light_is_portal(light):
+        return False
+    fault = "no area" if light.type == 'AREA' and not light.size * _height(light) else \
+        "" if all(matrix.col[axis].length for axis in compat.AXES_THAT_LIGHT[light.type]) else "a scale of 0"
+    if fault:
+        warnings.append(f"light '{name}' has {fault} and gives no light")
+    return not fault
+
+
 def fill_light(target, ob, matrix, warnings):
     """Writes the light of an evaluated object into `target`, a capi.Light."""
-    light = ob.data
-    target.name = ob.name.encode()
+    light, name = ob.data, name_of(ob)
+    target.name = name.encode()
     target.type = _TYPES[light.type]
     target.flags = 0 if compat.light_casts_shadow(light) else capi.LIGHT_NO_SHADOW
     scaled = light.type != 'SPOT' or compat.SPOT_IS_SCALED
     target.matrix[:] = column_major(matrix if scaled else matrix.normalized())
-    color = _color(light, ob.name, warnings)
-    strength = _STRENGTH[light.type](target, light, matrix, ob.name, warnings)
+    color = _color(light, name, warnings)
+    strength = _STRENGTH[light.type](target, light, matrix, name, warnings)
     target.emission[:] = [channel * light.energy * strength for channel in color]
     _fill_overrides(target, light.penumbra)
 
@@ -67,17 +79,17 @@ def _sun(target, light, matrix, name, warnings):
     return 2.0 * (sqrt(1.0 + squared) - 1.0) / squared  # mean cosine over the disk
 
 
+def _height(light):
+    return light.size_y if light.shape in {'RECTANGLE', 'ELLIPSE'} else light.size
+
+
 def _area(target, light, matrix, name, warnings):
     target.shape = capi.ELLIPSE if light.shape in {'DISK', 'ELLIPSE'} else capi.RECTANGLE
-    height = light.size_y if light.shape in {'RECTANGLE', 'ELLIPSE'} else light.size
-    target.size[:] = light.size, height
+    target.size[:] = light.size, _height(light)
     target.spread = light.spread
-    area = light.size * height * matrix.col[0].length * matrix.col[1].length
+    area = light.size * _height(light) * matrix.col[0].length * matrix.col[1].length
     if target.shape == capi.ELLIPSE:
         area *= pi / 4.0
-    if area < 1e-12:
-        warnings.append(f"light '{name}' has no area and gives no light")
-        return 0.0
     return compat.AREA_RADIANCE_PER_POWER * (1.0 / area if compat.light_is_normalized(light) else 1.0)
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from . import capi, compat, nodes, textures, uvs
 from .mesh import Needs
+from .names import name_of
 
 GREY = [0.8, 0.8, 0.8]
 # Instead of an image that is missing, as Cycles draws it.
@@ -56,7 +57,7 @@ def fill_material(target, material, texture, warnings):
         target.emission_texture = texture(surface.emission_image.image, textures.COLOR, surface.emission_image.flags)
         if not target.emission_texture:
             target.emission[:] = [a * b for a, b in zip(surface.emission, MISSING)]
-    placed = _placement(surface, material.name, warnings)
+    placed = _placement(surface, name_of(material), warnings)
     if placed and placed.matrix != uvs.IDENTITY:
         target.uv_matrix[:] = placed.matrix
     camera, shadow = compat.culls_backfaces(material)
@@ -74,14 +75,14 @@ def _placement(surface, name, warnings):
     pictures = surface.images()
     if any((picture.uv_map, picture.matrix) != (pictures[0].uv_map, pictures[0].matrix) for picture in pictures):
         warnings.append(f"material '{name}': its images are placed differently, all are placed as "
-                        f"'{pictures[0].image.name}'")
+                        f"'{name_of(pictures[0].image)}'")
     return pictures[0] if pictures else None
 
 
 def read_surface(material, warnings):
     if not compat.uses_nodes(material):
         return Surface(color=list(material.diffuse_color[:3]))
-    return _Reader(material.name, warnings).shader(nodes.surface(material.node_tree))
+    return _Reader(name_of(material), warnings).shader(nodes.surface(material.node_tree))
 
 
 class _Reader:

@@ -6,6 +6,7 @@ from ctypes import byref, memmove
 from typing import NamedTuple
 
 from . import capi
+from .names import name_of
 
 LIGHT_PREFIX = "Shadow."
 # Bytes of a pass name in Blender.
@@ -30,7 +31,7 @@ def list_passes(view_layer):
     if view_layer.use_pass_shadow:
         yield Pass("Shadow", "RGB", 'COLOR', capi.PASS_SHADOW, 1.0)
     if view_layer.penumbra.use_pass_light_shadows:
-        names = {light_pass_name(ob.name): None for ob in view_layer.objects if ob.type == 'LIGHT'}
+        names = {light_pass_name(name_of(ob)): None for ob in view_layer.objects if ob.type == 'LIGHT'}
         for name in names:
             yield Pass(name, "RGB", 'COLOR', capi.PASS_LIGHT_SHADOWS, 1.0)
 

@@ -4,13 +4,14 @@
 import bpy
 
 from . import export
+from .names import one_line
 
 lines = []
 
 
 def set_lines(warnings):
     """Each line once, in the order of the scene."""
-    lines[:] = dict.fromkeys(warnings)
+    lines[:] = dict.fromkeys(map(one_line, warnings))
 
 
 class PENUMBRA_OT_report(bpy.types.Operator):

@@ -5,6 +5,7 @@ from array import array
 from ctypes import c_void_p
 
 from . import capi, compat
+from .names import name_of
 
 # Particle systems that make hair, and how.
 _PATH = 'PATH'
@@ -58,7 +59,7 @@ def create_hair(ob, system, is_render, warnings):
         radii.extend(widths)
     if not strands:
         return None
-    return _create_strands(system.name, positions, radii, strands, warnings)
+    return _create_strands(name_of(system), positions, radii, strands, warnings)
 
 
 def hair_slot(system):

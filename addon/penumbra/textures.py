@@ -5,6 +5,7 @@ from array import array
 from ctypes import c_void_p
 
 from . import capi, color_spaces
+from .names import name_of
 
 # Uses of an image: its colour, its alpha channel, or its brightness as alpha.
 COLOR, ALPHA, GREY = 'color', 'alpha', 'grey'
@@ -18,7 +19,7 @@ class TextureCache:
 
     def get(self, image, use, flags, warnings):
         """(handle or None, whether the caller has to destroy it). `flags`: capi.TEXTURE_*."""
-        key = (image.library and image.library.filepath, image.name, use, flags)
+        key = (image.library and image.library.filepath, name_of(image), use, flags)
         state = (tuple(image.size), image.filepath, image.colorspace_settings.name, image.alpha_mode)
         keep = image.source == 'FILE' and not image.is_dirty
         if keep and self._kept.get(key, (None,))[0] == state:
@@ -65,13 +66,13 @@ def _create(image, use, flags, warnings):
     width, height = image.size
     pixels = pixels_of(image)
     if pixels is None:
-        warnings.append(f"image '{image.name}' is missing ({image.filepath or 'no file'})")
+        warnings.append(f"image '{name_of(image)}' is missing ({image.filepath or 'no file'})")
         return None
     if image.source in {'MOVIE', 'SEQUENCE', 'TILED'}:
-        warnings.append(f"image '{image.name}': of a {image.source.lower()} only one picture is used")
+        warnings.append(f"image '{name_of(image)}': of a {image.source.lower()} only one picture is used")
     channels = image.channels
     first, count = _channels(channels, use)
-    desc = capi.TextureDesc(name=image.name.encode(), width=width, height=height, channels=count, flags=flags)
+    desc = capi.TextureDesc(name=name_of(image).encode(), width=width, height=height, channels=count, flags=flags)
     if use != ALPHA:
         desc.is_srgb = color_spaces.decode(pixels, channels, image, warnings)
     desc.pixels.data = c_void_p(pixels.buffer_info()[0] + 4 * first)
@@ -79,7 +80,7 @@ def _create(image, use, flags, warnings):
     try:
         return capi.library().create('texture', desc)
     except capi.Error as error:
-        warnings.append(f"image '{image.name}': {error}")
+        warnings.append(f"image '{name_of(image)}': {error}")
         return None
 
 

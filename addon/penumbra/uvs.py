@@ -4,6 +4,7 @@
 from mathutils import Euler, Matrix, Vector
 
 from . import nodes
+from .names import name_of
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -60,5 +61,5 @@ def _uv_map(source, texture, warn):
     if node.type == 'ATTRIBUTE':
         return node.attribute_name
     if not (node.type == 'TEX_COORD' and source.output.name == 'UV'):
-        warn(f"image '{texture.image.name}' is placed by the UV map for renders, without {node.name}")
+        warn(f"image '{name_of(texture.image)}' is placed by the UV map for renders, without {node.name}")
     return ''

@@ -10,8 +10,8 @@ from unittest import mock
 
 import bpy
 
-from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_mesh, add_object, add_plane, output,
-                     run_blender, white_material)
+from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_mesh, add_object, add_plane, add_world,
+                     output, run_blender, white_material)
 
 from penumbra import report
 
@@ -107,31 +107,68 @@ class BadInput(SceneTest):
             add_plane(name, half=0.5, location=(1, 1, 1)).data.materials.append(material)
         self.finite("nosuch.png", "corrupted.png")
 
+    def link_of_each_kind(self, path):
+        """A scene that uses one of each kind of data-block from a library; {kind: name}."""
+        data = bpy.data
+        made = {'object': add_object("Linked", None), 'mesh': data.meshes.new("Shape"),
+                'curve': data.curves.new("Wire", 'CURVE'), 'camera': data.cameras.new("View"),
+                'point light': data.lights.new("Bulb", 'POINT'), 'world': data.worlds.new("Sky"),
+                'material': white_material("Paint"), 'image': data.images.new("Picture", 4, 4),
+                'collection': data.collections.new("Group"),
+                'node tree': data.node_groups.new("Nodes", 'ShaderNodeTree')}
+        made['image'].pack()
+        data.libraries.write(path, set(made.values()))
+        names = {kind: block.name for kind, block in made.items()}
+        data.batch_remove(made.values())
+        with data.libraries.load(path, link=True) as (source, target):
+            for kind in dir(source):
+                setattr(target, kind, getattr(source, kind))
+        own = white_material("Own")
+        own.node_tree.nodes.new('ShaderNodeGroup').node_tree = data.node_groups["Nodes"]
+        own.node_tree.nodes.new('ShaderNodeTexImage').image = data.images["Picture"]
+        for material in (own, data.materials["Paint"]):
+            data.objects["Cube"].data.materials.append(material)
+        for block in (data.meshes["Shape"], data.curves["Wire"], data.lights["Bulb"]):
+            add_object("Own", block)
+        self.scene.camera.data, self.scene.world = data.cameras["View"], data.worlds["Sky"]
+        instance = add_object("Instance", None)
+        instance.instance_type, instance.instance_collection = 'COLLECTION', data.collections["Group"]
+        self.scene.collection.objects.link(data.objects["Linked"])
+        return names
+
     def test_missing_library(self):
-        """An object that is not found, one whose mesh is not, and an override of the first."""
-        path, meshes = output("library.blend"), output("meshes.blend")
-        cube = add_cube("Linked", location=(1, 0, 1))
-        bpy.data.libraries.write(path, {cube})
-        bpy.data.libraries.write(meshes, {add_cube("Shape").data})
-        with bpy.data.libraries.load(path, link=True) as (_source, target):
-            target.objects = ["Linked"]
-        linked = target.objects[0]
-        with bpy.data.libraries.load(meshes, link=True) as (_source, target):
-            target.meshes = ["Shape"]
-        mesh = target.meshes[0]
-        bpy.data.objects["Shape"].data = mesh
-        self.scene.collection.objects.link(linked)
+        """Each line once, in the window and on the console."""
+        path = output("library.blend")
+        names = self.link_of_each_kind(path)
         blend = self.save("links")
+        self.finite()
+        self.assertFalse([line for line in report.lines if "library" in line])
         os.remove(path)
-        os.remove(meshes)
         code, text = run_blender(blend, '-E', 'PENUMBRA', '-o', output("linked_"), '-F', 'PNG', '-f', '1')
         self.assertEqual(code, 0, text)
         self.assertTrue(os.path.exists(output("linked_0001.png")), text)
-        self.assertRegex(text, r"object 'Linked': it is missing from the library '.*library\.blend'")
-        self.assertRegex(text, r"data 'Shape': it is missing from the library '.*meshes\.blend'")
         bpy.ops.wm.open_mainfile(filepath=blend)
         self.scene = bpy.context.scene
-        self.finite("'Linked': it is missing", "'Shape': it is missing")
+        self.finite()
+        told = [line for line in report.lines if "is missing from the library '//library.blend'" in line]
+        self.assertEqual(sorted(line[:line.index(':')] for line in told),
+                         sorted(f"{kind} '{name}'" for kind, name in names.items()))
+        for line in told:
+            self.assertIn(line, text)
+
+    def test_missing_library_of_an_override(self):
+        path = output("library.blend")
+        bpy.data.libraries.write(path, {add_cube("Linked", location=(1, 0, 1))})
+        bpy.data.objects.remove(bpy.data.objects["Linked"])
+        with bpy.data.libraries.load(path, link=True) as (_source, target):
+            target.objects = ["Linked"]
+        self.scene.collection.objects.link(target.objects[0])
+        target.objects[0].override_create(remap_local_usages=True)
+        blend = self.save("override")
+        os.remove(path)
+        bpy.ops.wm.open_mainfile(filepath=blend)
+        self.scene = bpy.context.scene
+        self.finite("object 'Linked': it is missing")
 
     def test_sizes(self):
         render = self.scene.render
@@ -152,13 +189,47 @@ class BadInput(SceneTest):
             self.assertEqual(cube.name, name)
         self.layer.penumbra.use_pass_light_shadows = True
         picture = self.render()
-        self.finite(*(f"'{name}'" for name in names))
+        self.finite(*(f"'{name}'".replace('\n', ' ') for name in names))
+        self.assertEqual(len(report.lines), len(names))
+        self.assertFalse([line for line in report.lines if '\n' in line])
         lights = [ob.name for ob in bpy.data.objects if ob.type == 'LIGHT']
         passes = {channel.split('.Shadow.')[1].rsplit('.', 1)[0] for channel in picture if '.Shadow.' in channel}
         # A file's channel has the first 47 bytes of a light's name, later the first 56.
         length = max(map(len, passes))
         self.assertGreaterEqual(length, 47)
         self.assertEqual(sorted(passes), sorted(name[:length] for name in lights))
+
+    def test_names_that_are_no_text(self):
+        """Old files may hold bytes that are not UTF-8: on an object, a light, a material, an image and the world."""
+        cube = bpy.data.objects["Cube"]
+        cube.name = "Wrong1"
+        cube.data.vertices[0].co.x = math.nan
+        cube.data.materials[0] = material = bpy.data.materials.new("Wrong2")
+        material.use_nodes = True
+        glossy = material.node_tree.nodes.new('ShaderNodeBsdfGlossy')
+        surface = next(node for node in material.node_tree.nodes if node.type == 'OUTPUT_MATERIAL')
+        material.node_tree.links.new(glossy.outputs[0], surface.inputs['Surface'])
+        texture = material.node_tree.nodes.new('ShaderNodeTexImage')
+        texture.image = bpy.data.images.new("Wrong3", 4, 4)
+        texture.image.source, texture.image.filepath = 'FILE', output("nosuch.png")
+        material.node_tree.links.new(texture.outputs['Color'], glossy.inputs['Color'])
+        for ob in (cube, add_light("Wrong4", 'AREA', scale=(0, 1, 1))):
+            ob.data.name = ob.name
+        world = add_world((1, 1, 1))
+        world.name = "Wrong5"
+        world.node_tree.nodes["Background"].inputs['Strength'].default_value = -1
+        self.layer.penumbra.use_pass_light_shadows = True
+        path = output("names.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path, compress=False)
+        with open(path, 'r+b') as file:
+            data = file.read()
+            file.seek(0)
+            file.write(data.replace(b'Wrong', b'Wr\xf6ng'))
+        bpy.ops.wm.open_mainfile(filepath=path)
+        self.scene = bpy.context.scene
+        picture = self.finite(*(rf"{kind} 'Wr\xf6ng{number}'" for number, kind in
+                                enumerate(("mesh", "material", "image", "light", "world"), 1)))
+        self.assertGreater(max(picture), 0.1)
 
     def save_for_output(self):
         self.scene.render.resolution_x, self.scene.render.resolution_y = 64, 48

@@ -10,7 +10,7 @@ import mathutils
 
 from harness import SceneTest, add_camera, add_cube, add_light, add_mesh, add_plane, output, white_material
 
-from penumbra import capi, compat, export, mesh as mesh_export, settings
+from penumbra import capi, compat, export, mesh as mesh_export, report, settings
 
 
 def read(path):
@@ -297,6 +297,19 @@ class Cameras(ExportTest):
         self.assert_close(scene.camera.matrix, [x for column in camera.matrix_world.col for x in column])
         self.assert_close((scene.camera.clip_start, scene.camera.clip_end), (0.5, 50))
 
+    def test_what_is_not_supported(self):
+        """A line each, once, though both eyes of stereo look through the camera."""
+        camera = add_camera()
+        camera.data.dof.use_dof = True
+        camera.scale.x = -1
+        self.scene.render.use_motion_blur = True
+        self.scene.render.use_multiview = True
+        bpy.ops.render.render()
+        self.assertEqual([line[:line.index(':')] for line in report.lines],
+                         ["scene 'Scene'", "camera 'Camera'", "camera 'Camera'"])
+        for line, word in zip(report.lines, ("motion blur", "depth of field", "mirrored")):
+            self.assertIn(word, line)
+
 
 class Materials(ExportTest):
     def setUp(self):
@@ -458,10 +471,29 @@ class Lights(ExportTest):
         self.assert_close(scene.lights[0].emission, (2, 1, 0))
 
     def test_no_area(self):
-        light, _count = self.light('AREA', shape='SQUARE', size=1, scale=(0, 1, 1))
-        self.assert_close(light.emission, (0, 0, 0))
-        add_light("Flat", 'AREA', size=0)
-        self.assertIn("light 'Flat' has no area and gives no light", self.warnings())
+        for settings in ({'size': 0}, {'shape': 'ELLIPSE', 'size_y': 0}):
+            add_light("Flat", 'AREA', **settings)
+        add_camera()
+        self.assertEqual(self.captured()[0].light_count, 0)
+        self.assertEqual(self.warnings(), [f"light '{name}' has no area and gives no light" for name in ("Flat", "Flat.001")])
+
+    def test_no_scale(self):
+        """Against Cycles in the scene rows dark_lights."""
+        for kind in ('AREA', 'SUN', 'SPOT', 'POINT'):
+            add_light(kind, kind, scale=(0, 0, 0))
+        self.assertEqual(self.warnings(), [f"light '{kind}' has a scale of 0 and gives no light"
+                                           for kind in ('AREA', 'SUN', 'SPOT')])
+        add_camera()
+        scene, _settings = self.captured()
+        self.assertEqual([scene.lights[i].name for i in range(scene.light_count)], [b'POINT'])
+
+    def test_portal(self):
+        for kind in ('AREA', 'POINT'):
+            add_light(kind, kind).data.cycles.is_portal = True
+        add_camera()
+        scene, _settings = self.captured()
+        self.assertEqual([scene.lights[i].name for i in range(scene.light_count)], [b'POINT'])
+        self.assertEqual(self.warnings(), [])
 
 
 class World(ExportTest):
