@@ -119,7 +119,10 @@ class PenumbraEngine(bpy.types.RenderEngine):
             try:
                 done = self._wait(job, exported)
                 if done:
-                    passes.fill_layer(result.layers[0], depsgraph.view_layer, job, *values.crop[2:])
+                    left_out = passes.fill_layer(result.layers[0], depsgraph.view_layer, job, *values.crop[2:])
+                    exported.warnings.extend(
+                        f"light '{name.removeprefix(passes.LIGHT_PREFIX)}': its shadow has no pass: Blender "
+                        "asks for the passes before it makes instances" for name in left_out)
                     timings = list(_timings(job))
                     statistics.record("Still", exported, values, timings, context)
                     self._show_statistics(timings)

@@ -31,9 +31,27 @@ def list_passes(view_layer):
     if view_layer.use_pass_shadow:
         yield Pass("Shadow", "RGB", 'COLOR', capi.PASS_SHADOW, 1.0)
     if view_layer.penumbra.use_pass_light_shadows:
-        names = {light_pass_name(name_of(ob)): None for ob in view_layer.objects if ob.type == 'LIGHT'}
-        for name in names:
+        for name in dict.fromkeys(map(light_pass_name, _light_names(view_layer.objects))):
             yield Pass(name, "RGB", 'COLOR', capi.PASS_LIGHT_SHADOWS, 1.0)
+
+
+def _light_names(objects):
+    """Of lights among the objects and in collections that they instance. Each instance of a light has a pass of its own,
+    whose name the library numbers."""
+    counts = {}
+    for ob in _lights(objects, ()):
+        name = name_of(ob)
+        number = counts[name] = counts.get(name, -1) + 1
+        yield f"{name}.{number:03}" if number else name
+
+
+def _lights(objects, around):
+    """`around`: the collections whose instances the objects are in."""
+    for ob in objects:
+        if ob.type == 'LIGHT':
+            yield ob
+        elif ob.instance_type == 'COLLECTION' and ob.instance_collection and ob.instance_collection not in around:
+            yield from _lights(ob.instance_collection.all_objects, (*around, ob.instance_collection))
 
 
 def light_pass_name(light_name):
@@ -49,7 +67,8 @@ def wanted(view_layer):
 
 
 def fill_layer(render_layer, view_layer, job, width, height):
-    """Writes a finished job into a render layer: all passes one after the other, as Blender keeps them."""
+    """Writes a finished job into a render layer: all passes one after the other, as Blender keeps them. Gives the names
+    of images that have no pass there."""
     images = _images(job)
     backgrounds = {item.name: item.background for item in list_passes(view_layer)}
     pixels = array('f')
@@ -63,6 +82,7 @@ def fill_layer(render_layer, view_layer, job, width, height):
         else:
             pixels.extend(array('f', [backgrounds.get(render_pass.name, 0.0)]) * count)
     render_layer.passes.foreach_set('rect', pixels)
+    return sorted(images.keys() - backgrounds.keys())
 
 
 def _images(job):

@@ -5,10 +5,10 @@ import os
 
 import bpy
 
-from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_plane, add_world, output, read_byte_image,
-                     white_material)
+from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_object, add_plane, add_world, output,
+                     read_byte_image, white_material)
 
-from penumbra import settings as penumbra_settings
+from penumbra import report, settings as penumbra_settings
 
 
 def channels_by_pass(picture):
@@ -116,6 +116,53 @@ class Passes(SceneTest):
                 if shadow == 0.0]
         self.assertGreater(len(dark), 20)
         self.assertEqual(max(dark), 0.0)
+
+    def add_bulb(self, x):
+        return add_light("Bulb", 'POINT', location=(x, 0, 3), shadow_soft_size=0.1, energy=30)
+
+    def instance(self, name, ob, **place):
+        """An instance of a collection of the object, which is only seen through it."""
+        collection = bpy.data.collections.new(name)
+        for user in list(ob.users_collection):
+            user.objects.unlink(ob)
+        collection.objects.link(ob)
+        empty = add_object(name, None, **place)
+        empty.instance_type, empty.instance_collection = 'COLLECTION', collection
+        return empty
+
+    def light_passes(self):
+        """Channel R of the pass of each light."""
+        self.layer.penumbra.use_pass_light_shadows = True
+        picture = self.render()
+        return {name.split('.', 2)[2].removesuffix('.R'): list(picture[name][2]) for name in picture
+                if 'Shadow.' in name and name.endswith('.R')}
+
+    def test_lights_of_instances(self):
+        """Each instance of a light has a pass, as a light at its place has: one in a collection, one in two."""
+        lamps = [self.add_bulb(x) for x in (-1.5, 1.5)]
+        expected = self.light_passes()
+        self.assertEqual(sorted(expected), ['Bulb', 'Bulb.001', 'Key'])
+        for lamp in lamps:
+            bpy.data.objects.remove(lamp)
+        inner = self.instance("Lamp", self.add_bulb(0), location=(-1, 0, 0))
+        other = add_object("Other", None, location=(1.5, 0, 0))
+        other.instance_type, other.instance_collection = 'COLLECTION', inner.instance_collection
+        self.instance("Group", inner, location=(-0.5, 0, 0))
+        actual = self.light_passes()
+        self.assertEqual(sorted(actual), sorted(expected))
+        self.assertEqual(sorted(actual.values()), sorted(expected.values()))
+        self.assertFalse([line for line in report.lines if "no pass" in line])
+
+    def test_light_without_pass(self):
+        """What only the dependency graph knows has none, and says so: a light on each corner of its parent."""
+        parent = add_plane("Lamps", half=1.5, location=(0, 0, 1))
+        parent.instance_type = 'VERTS'
+        parent.show_instancer_for_render = False
+        self.add_bulb(0).parent = parent
+        self.assertEqual(sorted(self.light_passes()), ['Bulb', 'Key'])
+        for number in (1, 2, 3):
+            start = f"light 'Bulb.00{number}': its shadow has no pass"
+            self.assertEqual(len([line for line in report.lines if line.startswith(start)]), 1)
 
     def test_two_view_layers(self):
         other = self.scene.view_layers.new("Other")
