@@ -6,10 +6,10 @@ from math import radians
 
 import bpy
 
-from harness import add_camera, add_cube, add_light, add_mesh, add_object, add_plane, white_material
+from harness import add_camera, add_cube, add_light, add_mesh, add_object, add_plane, add_world, white_material
 
 __all__ = ['ROWS', 'Stage', 'row', 'refine', 'radians', 'bpy', 'add_camera', 'add_cube', 'add_light', 'add_mesh', 'add_object',
-           'add_plane', 'white_material']
+           'add_plane', 'add_world', 'white_material']
 
 ROWS = []
 

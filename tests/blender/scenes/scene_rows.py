@@ -540,6 +540,27 @@ def light_hidden_from_diffuse(stage):
     _second_light().visible_diffuse = False
 
 
+@row('scene')
+def light_portal(stage):
+    """An area light that only shows where the world's light comes in, beside one that lights."""
+    stage.cube()
+    portal = add_light("Portal", 'AREA', location=(-1.2, -1.2, 2.2), size=0.6, energy=200)
+    portal.data.cycles.is_portal = True
+    stage.scene.world = add_world((0, 0, 0))    # Cycles ends with a crash without one
+
+
+@row('scene')
+def lights_without_scale(stage):
+    """Lights whose scale is 0 along all axes or one, beside one that lights."""
+    refine(stage)   # Cycles chooses among them for each sample
+    stage.cube()
+    for number, scale in enumerate(((0, 0, 0), (1, 1, 0), (0, 1, 1))):
+        place = {'location': (number - 1, -1.2, 2.2), 'scale': scale}
+        add_light("Sun", 'SUN', angle=0, energy=0.5, **place)
+        add_light("Spot", 'SPOT', shadow_soft_size=0, energy=60, **place)
+        add_light("Area", 'AREA', size=0.4, energy=30, **place)
+
+
 @row('scene', since=(4, 4))
 def light_exposure(stage):
     """Exposure of a light."""
