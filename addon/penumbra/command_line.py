@@ -25,7 +25,7 @@ def options():
             found[name] = True
         elif name in _WITH_VALUE:
             found[name] = next(arguments, None)
-            if found[name] is None:
+            if not found[name]:
                 raise UsageError(f"{argument} needs a value")
         else:
             known = ', '.join(_PREFIX + name for name in sorted(_WITH_VALUE | _FLAGS))
