@@ -8,7 +8,7 @@ from ctypes import byref, c_void_p
 
 import bpy
 
-from . import capi, command_line, device, export, passes, report, settings, statistics, viewport
+from . import capi, command_line, device, export, output, passes, report, settings, statistics, viewport
 from .names import name_of, one_line
 
 # How long a wait for the library may delay a cancel, in milliseconds.
@@ -76,6 +76,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
         # The report makes `blender -b` exit with an error and write no file, error_set shows in the image editor.
         self.report({'ERROR'}, message)
         self.error_set(message)
+        output.note_failure()
 
     def _render(self, depsgraph):
         scene = depsgraph.scene_eval

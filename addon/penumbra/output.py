@@ -12,7 +12,9 @@ import bpy
 _ENDS = {b'\x89PNG': b'IEND\xaeB`\x82', b'\xff\xd8\xff': b'\xff\xd9'}
 
 failures = []       # messages; with one, a Blender without a window ends with status 1
-_started = [0.0]    # when the render began
+_started = [0.0]    # when the render of the last frame began
+_has_failed = [False]   # whether a frame of the render could not be made
+_movie = []         # where a movie may lie whose render has not ended; Blender does not say so when it could not begin one
 
 
 def find_fault(path):
@@ -40,26 +42,42 @@ def _find_fault_of_disk(path):
 
 
 def _candidates(scene):
-    """(path with the frame's number, path of a still) of each file. Blender does not tell which of them it writes."""
+    """Paths of each file: with the frame's number, and of a still. Blender does not tell which of them it writes."""
     render = scene.render
+    if render.engine != 'PENUMBRA':
+        return
     each = render.use_multiview and render.image_settings.views_format == 'INDIVIDUAL'
     still = bpy.path.abspath(render.filepath).removesuffix(render.file_extension)
     for view in [view for view in render.views if view.use] if each else [None]:
-        yield (render.frame_path(frame=scene.frame_current, view=view.name if view else ""),
-               still + (view.file_suffix if view else "") + render.file_extension)
+        yield render.frame_path(frame=scene.frame_current, view=view.name if view else "")
+        yield still + (view.file_suffix if view else "") + render.file_extension
 
 
-def _remove_faulty(scene):
-    """(path, fault) of what was written in this render and is not whole. What could not be made at all, Blender reports."""
-    if scene.render.engine != 'PENUMBRA' or scene.render.is_movie_format:
-        return
-    for paths in _candidates(scene):
-        for path in paths:
-            is_new = os.path.isfile(path) and os.path.getmtime(path) >= _started[0]
-            fault = is_new and find_fault(path)
-            if fault:
-                os.remove(path)
-                yield path, fault
+def _written(paths):
+    """Those that this render has written."""
+    return [path for path in paths if os.path.isfile(path) and os.path.getmtime(path) >= _started[0]]
+
+
+def _remove_faulty(paths):
+    """(path, fault) of what was written and is not whole. What could not be made at all, Blender reports."""
+    for path in _written(paths):
+        fault = find_fault(path)
+        if fault:
+            os.remove(path)
+            yield path, fault
+
+
+def note_failure():
+    """A frame could not be rendered."""
+    _has_failed[0] = True
+
+
+@bpy.app.handlers.persistent
+def begin(scene, *_arguments):
+    """Handler of `render_init`."""
+    note_start()
+    _has_failed[0] = False
+    _movie[:] = _candidates(scene) if scene.render.is_movie_format else ()
 
 
 @bpy.app.handlers.persistent
@@ -69,22 +87,44 @@ def note_start(*_arguments):
 
 
 @bpy.app.handlers.persistent
-def check_written(scene, *_arguments):
-    """Handler of `render_write`: removes what is not whole, says so, and remembers it for the exit status."""
-    for path, fault in _remove_faulty(scene):
+def check_still(scene, *_arguments):
+    """Handler of `render_write`, at which a movie is not whole yet."""
+    if not scene.render.is_movie_format:
+        _check(_candidates(scene))
+
+
+@bpy.app.handlers.persistent
+def check_movie(scene, *_arguments):
+    """Handler of `render_complete`."""
+    if scene.render.is_movie_format:
+        _movie.clear()
+        _check(_candidates(scene))
+
+
+def _check(paths):
+    """Removes what is not whole, says so, and remembers it for the exit status."""
+    for path, fault in _remove_faulty(paths):
         failures.append(f"'{path}' could not be written: {fault}")
         print(f"Error: Penumbra: {failures[-1]}", flush=True)
 
 
 @bpy.app.handlers.persistent
 def clean_up(scene, *_arguments):
-    """Handler of `render_cancel`: after failures that Blender noticed itself a part of a picture may lie there."""
-    for _path, _fault in _remove_faulty(scene):
-        pass
+    """Handler of `render_cancel`: after failures that Blender noticed itself a part of a picture may lie there, and the part
+    of a movie before a frame that failed. Who sees the error in the window may want that."""
+    _movie.clear()
+    if not scene.render.is_movie_format:
+        for _path, _fault in _remove_faulty(_candidates(scene)):
+            pass
+    elif _has_failed[0] and bpy.app.background:
+        for path in _written(_candidates(scene)):
+            os.remove(path)
+            print(f"Error: Penumbra: '{path}' was removed, a frame of it failed", flush=True)
 
 
 def _end_with_failure():
     """Blender itself ends with 0. It has closed its files when Python ends."""
+    _check(_movie)
     if failures and bpy.app.background:
         os._exit(1)
 
@@ -92,7 +132,8 @@ def _end_with_failure():
 # Not in `register`: Blender disables all add-ons before Python ends.
 atexit.register(_end_with_failure)
 
-_HANDLERS = (('render_pre', note_start), ('render_write', check_written), ('render_cancel', clean_up))
+_HANDLERS = (('render_init', begin), ('render_pre', note_start), ('render_write', check_still),
+             ('render_complete', check_movie), ('render_cancel', clean_up))
 
 
 def register():

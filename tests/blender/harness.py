@@ -104,6 +104,16 @@ def read_byte_image(path):
     return *size, pixels
 
 
+def set_movie(scene):
+    """Output to a movie without loss."""
+    settings = scene.render.image_settings
+    if hasattr(settings, 'media_type'):
+        settings.media_type = 'VIDEO'
+    settings.file_format = 'FFMPEG'
+    movie = scene.render.ffmpeg
+    movie.format, movie.codec, movie.constant_rate_factor = 'MPEG4', 'H264', 'LOSSLESS'
+
+
 def render_exr(scene, path):
     """Renders the frame; the channels of the multilayer EXR it wrote."""
     settings = scene.render.image_settings

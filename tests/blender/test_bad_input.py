@@ -11,7 +11,7 @@ from unittest import mock
 import bpy
 
 from harness import (ADDON, SceneTest, add_camera, add_cube, add_light, add_mesh, add_object, add_plane, add_world,
-                     output, run_blender, white_material)
+                     output, run_blender, set_movie, white_material)
 
 from penumbra import report
 
@@ -266,13 +266,33 @@ class BadInput(SceneTest):
         self.assert_not_written(self.save_for_output(), folder + '/frame_')
         self.assertEqual(os.listdir(folder), [])
 
+    def fill(self, folder, room):
+        """Leaves as many bytes free."""
+        with open(folder + '/filler', 'wb', buffering=0) as filler:
+            with contextlib.suppress(OSError):
+                while filler.write(bytes(4096)):
+                    pass
+            filler.truncate(filler.tell() - room)
+
+    def test_full_disk_of_a_movie(self):
+        """Full from the beginning, and after some frames."""
+        set_movie(self.scene)
+        self.scene.penumbra.samples = 4
+        blend = self.save_for_output()
+        folder = self.mount()
+        for room in (0, 8192):
+            with self.subTest(room=room):
+                self.fill(folder, room)
+                code, text = run_blender(blend, '-E', 'PENUMBRA', '-o', folder + '/movie_', '-s', '1', '-e', '40', '-a')
+                self.assertNotEqual(code, 0, text)
+                self.assertIn("movie_0001-0040.mp4", text)
+                self.assertEqual(os.listdir(folder), ['filler'])
+
     def test_full_disk(self):
         """Nothing that looks like a picture is left; with room again the same Blender goes on."""
         blend = self.save_for_output()
         folder = self.mount()
-        with open(folder + '/filler', 'wb', buffering=0) as filler, contextlib.suppress(OSError):
-            while filler.write(bytes(4096)):
-                pass
+        self.fill(folder, 0)
         for kind in ('PNG', 'JPEG', 'OPEN_EXR', 'TIFF'):
             with self.subTest(kind=kind):
                 self.assert_not_written(blend, folder + '/frame_', kind)

@@ -10,7 +10,7 @@ from ctypes import byref, c_void_p
 
 import bpy
 
-from harness import SceneTest, blender_command, output, run_blender
+from harness import SceneTest, blender_command, output, run_blender, set_movie
 
 from penumbra import capi, report
 
@@ -98,9 +98,28 @@ class CommandLine(SceneTest):
         for options, words in ((('--penumbra-technique', 'VSMM'), ("VSMM", "PCSS")),
                                (('--penumbra-backend', 'egl:99'), ("egl:99",)),
                                (('--penumbra-stat',), ("--penumbra-stats",)),
-                               (('--penumbra-technique',), ("needs a value",))):
+                               (('--penumbra-technique',), ("needs a value",)),
+                               (('--penumbra-technique', ''), ("needs a value",)),
+                               (('--penumbra-backend', ''), ("needs a value",))):
             with self.subTest(options=options):
                 self.assert_fails(*self.blender(blend, '-f', '1', '--', *options), *words)
+
+    def movie(self, *arguments):
+        """Renders three frames to one."""
+        set_movie(self.scene)
+        return self.blender(self.save(), '-s', '1', '-e', '3', *arguments, '-a')
+
+    def test_movie(self):
+        code, log = self.movie()
+        self.assertEqual(code, 0, log)
+        self.assertEqual(self.files(), ["cli_0001-0003.mp4"])
+
+    def test_movie_that_fails_half_way(self):
+        """No file, as after a still that failed: the camera goes with the last frame."""
+        lose = ("import bpy; bpy.app.handlers.frame_change_pre.append(lambda scene, *_: "
+                "scene.frame_current == 3 and setattr(scene, 'camera', None))")
+        code, log = self.movie('--python-expr', lose)
+        self.assert_fails(code, log, "has no camera", "cli_0001-0003.mp4' was removed")
 
     def test_report(self):
         """What is approximated is told on the console, once, by name."""
