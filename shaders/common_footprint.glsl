@@ -8,6 +8,8 @@
 const vec2 footprint_pixel = vec2(0.5);
 #elif defined(EVERY_OTHER_PIXEL)
 #define footprint_pixel subsampled_fragment()
+#elif defined(LISTED_PIXELS)
+#define footprint_pixel listed_fragment
 #else
 #define footprint_pixel gl_FragCoord.xy
 #endif

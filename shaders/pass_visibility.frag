@@ -1,40 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Visibility of one light at every pixel, by the technique's function `vec3 technique_visibility(receiver r)`.
-// Output: rgb = visibility times weight, a = weight; a = 0 where the light does not reach.
+// Visibility of one light at every pixel, or every other one of both axes.
 #ifdef EVERY_OTHER_PIXEL
 #include "common_subsampling.glsl"
 #endif
-#include "common_camera.glsl"
-#include "common_steady.glsl"
-#include "common_light.glsl"
-#include "common_shadow.glsl"
-#include "technique"
+#include "common_visibility.glsl"
 
-uniform sampler2D gbuffer_depth, gbuffer_normal;
-
+#ifdef EVERY_OTHER_PIXEL
+layout(location = 0) out COARSE out_visibility;
+#else
 layout(location = 0) out vec4 out_visibility;
+#endif
 
 void main() {
 #ifdef EVERY_OTHER_PIXEL
-    vec2 coordinate = camera_pixel(subsampled_fragment());
+    out_visibility = coarse_encode(visibility_at(camera_pixel(subsampled_fragment())));
 #else
-    vec2 coordinate = camera_pixel(gl_FragCoord.xy);
+    out_visibility = visibility_at(camera_pixel(gl_FragCoord.xy));
 #endif
-    ivec2 pixel = ivec2(coordinate); // in the G-buffer
-    float depth = texelFetch(gbuffer_depth, pixel, 0).r;
-    out_visibility = vec4(0.0);
-    if (depth == 0.0)
-        return;
-    vec4 normals = texelFetch(gbuffer_normal, pixel, 0);
-    vec3 geometric = octahedral_decode(normals.zw), shading = octahedral_decode(normals.xy);
-    vec3 position = lit_position(camera_position(coordinate, depth), geometric);
-    if (!light_reaches(position, shading))
-        return;
-    out_visibility = vec4(1.0);
-    int layer = light_layer(position);
-    if (layer < 0 || light.casts_shadow == 0.0 || depth < 0.0)
-        return;
-    // Light wholly behind the surface itself lights nothing, whatever the shading normal says.
-    receiver r = receiver_create(position, geometric, shading, layer);
-    out_visibility.rgb = light_reaches(position, geometric) ? technique_visibility(r) : vec3(0.0);
 }

@@ -41,9 +41,8 @@ struct renderer {
     struct gl_texture key_depth, key_normal; /* the G-buffer's of the key sample, reuse.c */
     struct gl_texture
         visibility; /* RGBA16F or RGBA32F, W x H: rgb = visibility times weight, a = weight, of one light */
-    /* With SUBSAMPLING_PARAMETER: visibility of every other pixel, RGBA16F, and where it cannot be interpolated,
-     * DEPTH_COMPONENT32F, W x H, see subsampling.c. */
-    struct gl_texture coarse_visibility, pending;
+    struct gl_texture coarse_visibility; /* with SUBSAMPLING_PARAMETER: of every other pixel, RGBA16F or R32F */
+    struct gl_buffer pixel_list;         /* pixels where it cannot be interpolated, pixel_list.c */
     /* Of the sample being drawn, W x H: sums over the lights, RGBA32F, with and without shadows; and what is drawn
      * anew, DEPTH_COMPONENT32F, see reuse.c. The last two exist if they are wanted. */
     struct gl_texture irradiance, unshadowed_irradiance, drawn;
@@ -136,13 +135,19 @@ pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums,
 pnb_result pass_planes(struct frame *frame, struct frame_light *light);
 /* visibility.c: G-buffer, map, min_max -> renderer.visibility, by the technique; tiles: of undecided ones only. */
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles);
-/* subsampling.c: makes coarse_visibility and pending, or frees them if they are not wanted. */
+/* subsampling.c: makes coarse_visibility, or frees it if it is not wanted. */
 pnb_result ensure_subsampling(struct frame *frame, bool wanted);
 /* Gives the current program what says which pixel a texel of coarse_visibility is. */
 void bind_subsampling(struct frame *frame, GLuint program);
-/* G-buffer, coarse_visibility -> visibility, where it can be interpolated; pending: 1 where it cannot, 0.5 elsewhere.
- */
-pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light);
+/* G-buffer, coarse_visibility -> visibility, where it can be interpolated, and pixel_list, where it cannot, of so many
+ * rows of the crop, at most pixel_list_rows. */
+pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light, int row, int rows);
+/* pixel_list.c: empties pixel_list and binds it for shaders that add to it. */
+pnb_result pixel_list_begin(struct frame *frame);
+/* Rows of the crop for whose pixels there is room. */
+int pixel_list_rows(const struct frame *frame);
+/* Runs the current program, a compute shader, for every pixel of the list. */
+void pixel_list_dispatch(struct frame *frame);
 /* irradiance.c: makes the sample's sums over the lights; adds to them one light's irradiance times visibility, that of
  * the tile where it is decided, and to the light's share of the shadow pass. first: replaces what the sums held. */
 pnb_result ensure_irradiance(struct frame *frame);

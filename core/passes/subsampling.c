@@ -13,15 +13,11 @@ pnb_result ensure_subsampling(struct frame *frame, bool wanted) {
     const uint32_t *crop = frame->settings->crop;
     if (!wanted) {
         gl_texture_free(frame->gl, &renderer->coarse_visibility);
-        gl_texture_free(frame->gl, &renderer->pending);
         return PNB_OK;
     }
-    pnb_result result = gl_texture_ensure(frame->gl, &renderer->coarse_visibility, GL_RGBA16F,
-                                          coarse_size(crop[0], crop[2]), coarse_size(crop[1], crop[3]), 0, 1);
-    if (result == PNB_OK)
-        result =
-            gl_texture_ensure(frame->gl, &renderer->pending, GL_DEPTH_COMPONENT32F, frame->width, frame->height, 0, 1);
-    return result;
+    const GLenum format = frame->scene->colored ? GL_RGBA16F : GL_R32F;
+    return gl_texture_ensure(frame->gl, &renderer->coarse_visibility, format, coarse_size(crop[0], crop[2]),
+                             coarse_size(crop[1], crop[3]), 0, 1);
 }
 
 void bind_subsampling(struct frame *frame, GLuint program) {
@@ -29,31 +25,32 @@ void bind_subsampling(struct frame *frame, GLuint program) {
     program_set_vec2(frame->gl, program, "first_pixel", (const float[2]){-(float)(crop[0] % 2), -(float)(crop[1] % 2)});
 }
 
-pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light) {
+pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light, int row, int rows) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const struct program_desc desc = {.vertex = "pass_screen.vert",
-                                      .fragment = "pass_interpolate.frag",
-                                      .defines = {light_defines(&light->emitter, &light->views)}};
+    const struct program_desc desc = {
+        .vertex = "pass_screen.vert",
+        .fragment = "pass_interpolate.frag",
+        .defines = {light_defines(&light->emitter, &light->views), fragment_defines(frame, &light->lists)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Interpolation")) != PNB_OK)
         return result;
-    const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1, .depth = &renderer->pending};
-    if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) == PNB_OK) {
-        const float pending = 1.0f;
+    const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1};
+    if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) == PNB_OK &&
+        (result = pixel_list_begin(frame)) == PNB_OK) {
         gl->Disable(GL_BLEND);
-        gl->Enable(GL_DEPTH_TEST);
-        gl->DepthFunc(GL_LESS); /* passes, and leaves the depth of what is drawn, one half */
-        gl->DepthMask(GL_TRUE);
-        gl->ClearBufferfv(GL_DEPTH, 0, &pending);
+        test_depth(frame, false);
+        gl->Enable(GL_SCISSOR_TEST);
+        gl->Scissor(0, row, frame->width, rows);
         bind_gbuffer(renderer, program);
         bind_subsampling(frame, program);
         gl_texture_bind(gl, &renderer->coarse_visibility, 3);
         program_set_int(gl, program, "coarse_visibility", 3);
         draw_screen(renderer);
+        gl->Disable(GL_SCISSOR_TEST);
         result = gl_check(gl, "interpolation");
     }
-    timer_end(&renderer->timer, gl_texture_bytes(&renderer->coarse_visibility) + gl_texture_bytes(&renderer->pending));
+    timer_end(&renderer->timer, gl_texture_bytes(&renderer->coarse_visibility) + renderer->pixel_list.bytes);
     return result;
 }

@@ -100,14 +100,17 @@ void bind_technique(struct frame *frame, const struct frame_light *light, GLuint
         light->technique->bind(frame, light, program, 5);
 }
 
-/* The pixels that are drawn: all that are wanted, every other one of both axes, or those that are pending. */
-enum pixels { PIXELS_WANTED, PIXELS_EVERY_OTHER, PIXELS_PENDING };
+/* Gives the current program what common_visibility.glsl reads. */
+static void bind_visibility(struct frame *frame, const struct frame_light *light, GLuint program) {
+    bind_gbuffer(frame->renderer, program);
+    bind_steady(frame, program);
+    bind_technique(frame, light, program);
+}
 
-static pnb_result draw_pixels(struct frame *frame, const struct frame_light *light, enum tiles tiles,
-                              enum pixels pixels) {
+/* coarse: every other pixel of both axes, else all that are wanted. */
+static pnb_result draw_pixels(struct frame *frame, const struct frame_light *light, enum tiles tiles, bool coarse) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const bool coarse = pixels == PIXELS_EVERY_OTHER;
     const struct program_desc desc = {.vertex = tiles ? "pass_tile.vert" : "pass_screen.vert",
                                       .fragment = "pass_visibility.frag",
                                       .technique = light->technique->shader,
@@ -118,33 +121,51 @@ static pnb_result draw_pixels(struct frame *frame, const struct frame_light *lig
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
         return result;
-    const struct gl_texture *depth = pixels == PIXELS_WANTED    ? if_made(&renderer->drawn)
-                                     : pixels == PIXELS_PENDING ? &renderer->pending
-                                                                : NULL;
     const struct gl_texture *output = coarse ? &renderer->coarse_visibility : &renderer->visibility;
-    const struct gl_target target = {.colors = {output}, .color_count = 1, .depth = depth};
+    const struct gl_target target = {
+        .colors = {output}, .color_count = 1, .depth = coarse ? NULL : if_made(&renderer->drawn)};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
-    test_depth(frame, pixels == PIXELS_PENDING || (pixels == PIXELS_WANTED && frame->reuses));
+    test_depth(frame, !coarse && frame->reuses);
     gl->Disable(GL_BLEND);
-    bind_gbuffer(renderer, program);
-    bind_steady(frame, program);
     if (coarse)
         bind_subsampling(frame, program);
-    bind_technique(frame, light, program);
+    bind_visibility(frame, light, program);
     draw_over(frame, program, tiles, true);
     timer_end(&renderer->timer, gl_texture_bytes(output));
     return gl_check(gl, "visibility");
+}
+
+static pnb_result draw_list(struct frame *frame, const struct frame_light *light) {
+    struct renderer *renderer = frame->renderer;
+    const struct gl *gl = renderer->gl;
+    const struct program_desc desc = {.compute = "pass_visibility_list.comp",
+                                      .technique = light->technique->shader,
+                                      .defines = {light_defines(&light->emitter, &light->views),
+                                                  technique_defines(light), fragment_defines(frame, &light->lists)}};
+    GLuint program;
+    pnb_result result = program_use(&renderer->programs, &desc, &program);
+    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
+        return result;
+    bind_visibility(frame, light, program);
+    gl->BindImageTexture(0, renderer->visibility.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, renderer->visibility.format);
+    pixel_list_dispatch(frame);
+    timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
+    return gl_check(gl, "visibility of listed pixels");
+}
+
+static pnb_result draw_subsampled(struct frame *frame, const struct frame_light *light) {
+    pnb_result result = draw_pixels(frame, light, TILES_NONE, true);
+    const int rows = pixel_list_rows(frame);
+    for (int row = 0; row < frame->height && result == PNB_OK; row += rows)
+        if ((result = pass_interpolate(frame, light, row, rows)) == PNB_OK)
+            result = draw_list(frame, light);
+    return result;
 }
 
 pnb_result pass_visibility(struct frame *frame, const struct frame_light *light, enum tiles tiles) {
     /* Between keys few pixels are drawn, and hardly any with all its neighbours. */
     const bool subsampled =
         technique_subsamples(light->technique, light->parameters) && tiles == TILES_NONE && reuse_is_key(frame);
-    if (!subsampled)
-        return draw_pixels(frame, light, tiles, PIXELS_WANTED);
-    pnb_result result = draw_pixels(frame, light, tiles, PIXELS_EVERY_OTHER);
-    if (result == PNB_OK)
-        result = pass_interpolate(frame, light);
-    return result == PNB_OK ? draw_pixels(frame, light, tiles, PIXELS_PENDING) : result;
+    return subsampled ? draw_subsampled(frame, light) : draw_pixels(frame, light, tiles, false);
 }

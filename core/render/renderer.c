@@ -49,13 +49,13 @@ void renderer_destroy(struct renderer **out) {
                               renderer->box_buffer,    renderer->tile_buffer,  renderer->tile_visibility_buffer,
                               renderer->cursor_buffer};
     gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
+    gl_buffer_free(gl, &renderer->pixel_list);
     struct gl_texture *const textures[] = {&renderer->gbuffer_depth,
                                            &renderer->gbuffer_normal,
                                            &renderer->gbuffer_color,
                                            &renderer->gbuffer_z,
                                            &renderer->visibility,
                                            &renderer->coarse_visibility,
-                                           &renderer->pending,
                                            &renderer->combined,
                                            &renderer->shadowed,
                                            &renderer->unshadowed,

@@ -69,6 +69,24 @@ static void crops(const char *scene_name, enum test_light light, const char *tec
     test_scene_destroy(&test);
 }
 
+/* A larger image than what is listed at once of pixels that are not interpolated (pixel_list.c): 576 rows at a time. */
+static void rows_of_lists(void) {
+    struct test_scene *test = quality_scene("lantern", TEST_LIGHT_RECTANGLE, 0, NAN);
+    pnb_settings settings = quality_scene_settings("MULTILAYER", test, 1024);
+    const pnb_value on = {"subsampling", 1};
+    settings.values = &on;
+    settings.value_count = 1;
+    settings.shadow_map_size = 64;
+    struct render full = quality_render(test_scene_get(test), &settings);
+    memcpy(settings.crop, (uint32_t[4]){0, 500, 1024, 200}, sizeof settings.crop);
+    struct render part = quality_render(test_scene_get(test), &settings);
+    if (full.job && part.job)
+        CHECK_INT(different_pixels(&full, &part, settings.crop), 0);
+    render_free(&full);
+    render_free(&part);
+    test_scene_destroy(&test);
+}
+
 int main(void) {
     quality_open();
     static const char *const techniques[] = {"PCSS", "REFERENCE"};
@@ -81,5 +99,6 @@ int main(void) {
         }
     /* Which interpolates from pixels beside the crop. */
     crops("lantern", TEST_LIGHT_RECTANGLE, "MULTILAYER", 3, "subsampling");
+    rows_of_lists();
     return quality_close();
 }
