@@ -10,7 +10,6 @@
 uniform ivec4 levels[14];        // first head, texels per side, log2 of a texel's width, border of a stack or -1
 uniform float filter_widths[14]; // of the box with the variance of the level's filter, in texels of the map
 uniform int level_count, p_lookups, p_antialiasing;
-uniform int is_opaque;           // 1: no caster lets light through
 
 // What the fragments of one level hide between the depths of two levels.
 struct share {
