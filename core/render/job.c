@@ -64,12 +64,20 @@ static void release(struct pnb_job *job) {
     release_locked(job);
 }
 
-static bool job_is_done(const pnb_job *job) {
-    pthread_mutex_t *lock = &((pnb_job *)job)->lock; /* reading a job does not change it for its owner */
+bool job_is_done(const struct pnb_job *job) {
+    pthread_mutex_t *lock = &((struct pnb_job *)job)->lock; /* reading a job does not change it for its owner */
     pthread_mutex_lock(lock);
     bool done = job->state == JOB_DONE;
     pthread_mutex_unlock(lock);
     return done;
+}
+
+pnb_result job_check(const struct pnb_job *job) {
+    return job ? process_check_fork() : error_set(PNB_ERROR_INVALID_ARGUMENT, "the job is NULL");
+}
+
+size_t job_image_floats(const struct pnb_job *job, const struct job_image *image) {
+    return (size_t)job->settings.crop[2] * job->settings.crop[3] * image->channels;
 }
 
 /* With the job's lock held. */
@@ -145,12 +153,8 @@ float *job_add_image(struct pnb_job *job, const char *name, uint32_t channels) {
     return image.pixels;
 }
 
-static size_t image_floats(const struct pnb_job *job, const struct job_image *image) {
-    return (size_t)job->settings.crop[2] * job->settings.crop[3] * image->channels;
-}
-
 static pnb_result publish_image(const struct pnb_job *job, struct job_image *image) {
-    const size_t count = image_floats(job, image);
+    const size_t count = job_image_floats(job, image);
     if (!image->published)
         image->published = memory_array(count, sizeof *image->published);
     if (!image->published)
@@ -242,11 +246,6 @@ pnb_result pnb_render_start(pnb_context *context, const pnb_scene *scene, const 
     return result;
 }
 
-/* INVALID_ARGUMENT or FORKED; a forked child's copy of a job may be locked for ever. */
-static pnb_result check_job(const pnb_job *job) {
-    return job ? process_check_fork() : error_set(PNB_ERROR_INVALID_ARGUMENT, "the job is NULL");
-}
-
 static struct timespec deadline_after(uint32_t milliseconds) {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
@@ -271,7 +270,7 @@ static bool wait_until_done(struct pnb_job *job, uint32_t timeout_ms) {
 }
 
 pnb_result pnb_job_wait(pnb_job *job, uint32_t timeout_ms, pnb_progress *progress) {
-    pnb_result result = check_job(job);
+    pnb_result result = job_check(job);
     if (result == PNB_OK && progress) {
         result = CHECK_STRUCT(progress, pnb_progress);
     }
@@ -291,7 +290,7 @@ pnb_result pnb_job_wait(pnb_job *job, uint32_t timeout_ms, pnb_progress *progres
 }
 
 void pnb_job_cancel(pnb_job *job) {
-    if (check_job(job) != PNB_OK) {
+    if (job_check(job) != PNB_OK) {
         return;
     }
     pthread_mutex_lock(&job->lock);
@@ -332,121 +331,4 @@ pnb_result pnb_render(pnb_context *context, const pnb_scene *scene, const pnb_se
         pnb_job_destroy(&started);
     }
     return result;
-}
-
-/* ---- Results ---------------------------------------------------------------------------------------------- */
-
-static bool is_readable(const pnb_job *job) {
-    return job && !process_is_forked() && job_is_done(job);
-}
-
-static pnb_result check_readable(const pnb_job *job, const char *what, uint32_t index, uint32_t count) {
-    pnb_result result = check_job(job);
-    if (result == PNB_OK && !job_is_done(job)) {
-        result =
-            error_set(PNB_ERROR_INVALID_ARGUMENT, "the job is not finished: wait for it before reading a %s", what);
-    }
-    if (result == PNB_OK && index >= count) {
-        result = error_set(PNB_ERROR_INVALID_ARGUMENT, "%s %u does not exist, the job has %u", what, index, count);
-    }
-    return result;
-}
-
-uint32_t pnb_job_image_count(const pnb_job *job) {
-    return is_readable(job) ? job->image_count : 0;
-}
-
-pnb_result pnb_job_get_image(const pnb_job *job, uint32_t index, pnb_image *image) {
-    pnb_result result = CHECK_STRUCT(image, pnb_image);
-    if (result == PNB_OK) {
-        result = check_readable(job, "image", index, pnb_job_image_count(job));
-    }
-    if (result != PNB_OK) {
-        return result;
-    }
-    const struct job_image *from = &job->images[index];
-    *image = (pnb_image){.struct_size = sizeof *image,
-                         .width = job->settings.crop[2],
-                         .height = job->settings.crop[3],
-                         .channels = from->channels,
-                         .name = from->name,
-                         .pixels = from->pixels};
-    return PNB_OK;
-}
-
-/* With the job's lock held. */
-static pnb_result copy_image(const pnb_job *job, uint32_t index, float *pixels, uint64_t capacity, uint32_t *samples) {
-    const bool done = job->state == JOB_DONE;
-    if (done && job->result != PNB_OK)
-        return error_set(job->result, "%s", job->error);
-    if (!done && job->published_samples == 0)
-        return PNB_TIMEOUT;
-    if (index >= job->image_count)
-        return error_set(PNB_ERROR_INVALID_ARGUMENT, "image %u does not exist, the job has %u", index,
-                         job->image_count);
-    const struct job_image *image = &job->images[index];
-    const size_t count = image_floats(job, image);
-    if (pixels && capacity < count)
-        return error_set(PNB_ERROR_INVALID_ARGUMENT, "image '%s' has %zu floats, there is room for %llu", image->name,
-                         count, (unsigned long long)capacity);
-    if (pixels)
-        memcpy(pixels, done ? image->pixels : image->published, count * sizeof *pixels);
-    if (samples)
-        *samples = done ? job->settings.samples : job->published_samples;
-    return PNB_OK;
-}
-
-pnb_result pnb_job_copy_image(const pnb_job *job, uint32_t index, float *pixels, uint64_t capacity, uint32_t *samples) {
-    pnb_result result = check_job(job);
-    if (result != PNB_OK)
-        return result;
-    pthread_mutex_t *lock = &((pnb_job *)job)->lock;
-    pthread_mutex_lock(lock);
-    result = copy_image(job, index, pixels, capacity, samples);
-    pthread_mutex_unlock(lock);
-    return result;
-}
-
-uint32_t pnb_job_timing_count(const pnb_job *job) {
-    return is_readable(job) ? job->timing_count : 0;
-}
-
-pnb_result pnb_job_get_timing(const pnb_job *job, uint32_t index, pnb_timing *timing) {
-    pnb_result result = CHECK_STRUCT(timing, pnb_timing);
-    if (result == PNB_OK) {
-        result = check_readable(job, "timing", index, pnb_job_timing_count(job));
-    }
-    if (result != PNB_OK) {
-        return result;
-    }
-    const struct job_timing *from = &job->timings[index];
-    *timing = (pnb_timing){.struct_size = sizeof *timing,
-                           .count = from->count,
-                           .name = from->name,
-                           .gpu_ms = from->gpu_ms,
-                           .cpu_ms = from->cpu_ms,
-                           .bytes = from->bytes};
-    return PNB_OK;
-}
-
-uint32_t pnb_job_message_count(const pnb_job *job) {
-    if (!job || process_is_forked()) {
-        return 0;
-    }
-    struct messages *messages = &((pnb_job *)job)->messages;
-    pthread_mutex_lock(&messages->lock);
-    uint32_t count = messages->count;
-    pthread_mutex_unlock(&messages->lock);
-    return count;
-}
-
-const char *pnb_job_message(const pnb_job *job, uint32_t index) {
-    if (index >= pnb_job_message_count(job)) {
-        return "";
-    }
-    struct messages *messages = &((pnb_job *)job)->messages;
-    pthread_mutex_lock(&messages->lock);
-    const char *text = messages->texts[index]; /* the array may move while rendering, its texts do not */
-    pthread_mutex_unlock(&messages->lock);
-    return text;
 }

@@ -67,6 +67,12 @@ pnb_result job_publish(struct pnb_job *job, uint32_t samples);
 /* Adds to the times of that name; bytes are what the pass owns, so the largest counts. */
 pnb_result job_add_timing(struct pnb_job *job, const char *name, double gpu_ms, double cpu_ms, uint64_t bytes);
 
+/* INVALID_ARGUMENT or FORKED; a forked child's copy of a job may be locked for ever. */
+pnb_result job_check(const struct pnb_job *job);
+/* Takes the lock. */
+bool job_is_done(const struct pnb_job *job);
+size_t job_image_floats(const struct pnb_job *job, const struct job_image *image);
+
 /* For the context. A job that is cancelled while queued is DONE at once; job_begin is then false. */
 bool job_begin(struct pnb_job *job);
 /* Ends the job, if it is not DONE, with the thread's last error, or CANCELLED if that was asked for; and gives back the
