@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Colour spaces of byte images, which come as they are stored. Blender has already made float images linear."""
 
+from array import array
 from typing import NamedTuple
 
 from .names import name_of
@@ -28,11 +29,12 @@ _SPACES = {
 }
 
 
-def decode(pixels, channels, image, warnings):
-    """Makes the pixels linear Rec.709 in place, but for the sRGB curve: True if that is left to do."""
+def decode(raster, image, warnings):
+    """Makes an image's Raster linear Rec.709 in place, but for the sRGB curve: True if that is left to do."""
     settings = image.colorspace_settings
-    if image.is_float or settings.is_data or channels < 3:
-        return not (image.is_float or settings.is_data)
+    values, channels = raster.values, raster.channels
+    if raster.is_float or settings.is_data or channels < 3:
+        return not (raster.is_float or settings.is_data)
     space = _SPACES.get(settings.name)
     if space is None:
         warnings.append(f"image '{name_of(image)}': colour space {settings.name} is taken for sRGB")
@@ -40,11 +42,11 @@ def decode(pixels, channels, image, warnings):
     if space.to_rec709 is None and space.gamma in (0.0, 1.0):
         return space.gamma == 0.0
     table = _curve(space.gamma)
-    planes = [[table[round(255.0 * value)] for value in pixels[channel::channels]] for channel in range(3)]
+    planes = [[table[round(255.0 * value)] for value in values[channel::channels]] for channel in range(3)]
     if space.to_rec709:
         planes = _convert(planes, space.to_rec709)
     for channel in range(3):
-        pixels[channel::channels] = type(pixels)('f', planes[channel])
+        values[channel::channels] = array('f', planes[channel])
     return False
 
 

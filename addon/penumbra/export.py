@@ -48,7 +48,8 @@ class SceneExport:
         self._shown_in = shown_in
         self._templates = {}        # addresses of object, data and instancing object: what is drawn of it
         self._links = LightLinks()
-        self._textures = {}         # (address of the image, use, flags): (handle, whether it is ours)
+        self._texture_cache = kept.textures if kept else textures.cache
+        self._textures = {}         # (address of the image, file, use, flags): (handle, whether it is ours)
         self._materials = {}        # address: ExportedMaterial; None: no material
         self._slots = {}            # tuple of material indices: first slot
         self._material_list, self._slot_list, self._lights = [], [], []
@@ -79,6 +80,8 @@ class SceneExport:
             if is_ours and handle:
                 capi.library().destroy('texture', handle)
         self._textures = {}
+        if not self._kept:
+            self._texture_cache.end_export()
 
     def set_camera(self, ob, matrix, shift_x, width, height, aspect):
         self._owners['camera'] = f"camera '{name_of(ob)}'"
@@ -204,11 +207,10 @@ class SceneExport:
             self._material_list.append(target)
         return self._materials[key]
 
-    def _texture(self, image, use, flags):
-        key = (image.as_pointer(), use, flags)
+    def _texture(self, picture):
+        key = (picture.image.as_pointer(), picture.file, picture.use, picture.flags)
         if key not in self._textures:
-            cache = self._kept.textures if self._kept else textures.cache
-            self._textures[key] = cache.get(image, use, flags, self.warnings)
+            self._textures[key] = self._texture_cache.get(picture.image, *key[1:], self.warnings)
         return self._textures[key][0]
 
     # ---- The rest ----

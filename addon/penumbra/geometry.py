@@ -84,7 +84,7 @@ class Kept:
     """Meshes and textures kept from one export of a viewport to the next while Blender says that they did not change."""
 
     def __init__(self):
-        self.textures = textures.TextureCache()
+        self.textures = textures.TextureCache(is_told=True)
         self._meshes = {}       # (address of the evaluated data, needs): (what identifies its content, handle)
         self._used = set()
         self._changed = None    # see changed_data
@@ -116,6 +116,7 @@ class Kept:
 
     def end(self):
         """After the export: what it did not use is dropped."""
+        self.textures.end_export()
         for key in self._meshes.keys() - self._used:
             self._drop(key)
 

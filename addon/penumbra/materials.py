@@ -3,20 +3,19 @@
 
 from dataclasses import dataclass, field
 
-from . import capi, compat, nodes, textures, uvs
+from . import capi, compat, images, nodes, textures, uvs
 from .mesh import Needs
 from .names import name_of
 
 GREY = [0.8, 0.8, 0.8]
-# Instead of an image that is missing, as Cycles draws it.
-MISSING = [1.0, 0.0, 1.0]
 
 
 @dataclass
 class Picture:
     """An image as a node uses it."""
     image: object
-    use: str            # textures.ALPHA or GREY, where it is an alpha
+    file: str           # see images.read
+    use: str            # textures.COLOR or ALPHA
     flags: int          # capi.TEXTURE_*
     uv_map: str
     matrix: tuple       # of the texture coordinates
@@ -40,7 +39,7 @@ class Surface:
 
 
 def fill_material(target, material, texture, warnings):
-    """`texture(image, use, flags)` returns a handle or None. Returns what the material needs of a mesh."""
+    """`texture(picture)` returns a handle or None. Returns what the material needs of a mesh."""
     surface = read_surface(material, warnings)
     target.base_color[:] = surface.color
     target.transparency = 1.0 - surface.alpha
@@ -48,15 +47,15 @@ def fill_material(target, material, texture, warnings):
     target.shadow_threshold = compat.shadow_threshold(material)
     target.emission[:] = surface.emission
     if surface.color_image:
-        target.base_color_texture = texture(surface.color_image.image, textures.COLOR, surface.color_image.flags)
+        target.base_color_texture = texture(surface.color_image)
         if not target.base_color_texture:
-            target.base_color[:] = [a * b for a, b in zip(surface.color, MISSING)]
+            target.base_color[:] = [a * b for a, b in zip(surface.color, images.MISSING)]
     if surface.alpha_image:
-        target.alpha_texture = texture(surface.alpha_image.image, surface.alpha_image.use, surface.alpha_image.flags)
+        target.alpha_texture = texture(surface.alpha_image)
     if surface.emission_image:
-        target.emission_texture = texture(surface.emission_image.image, textures.COLOR, surface.emission_image.flags)
+        target.emission_texture = texture(surface.emission_image)
         if not target.emission_texture:
-            target.emission[:] = [a * b for a, b in zip(surface.emission, MISSING)]
+            target.emission[:] = [a * b for a, b in zip(surface.emission, images.MISSING)]
     placed = _placement(surface, name_of(material), warnings)
     if placed and placed.matrix != uvs.IDENTITY:
         target.uv_matrix[:] = placed.matrix
@@ -247,8 +246,9 @@ class _Reader:
             self.warn(f"node {output.node.name} is not supported in '{source.socket.name}', or has no image")
             return None
         uv_map, matrix = uvs.placement(source, self.warn)
-        use = textures.ALPHA if output.name == 'Alpha' else textures.GREY
-        return Picture(output.node.image, use, textures.node_flags(output.node), uv_map, matrix)
+        use = textures.ALPHA if output.name == 'Alpha' else textures.COLOR
+        file = images.sequence_file(output.node.image, output.node.image_user)
+        return Picture(output.node.image, file, use, textures.node_flags(output.node), uv_map, matrix)
 
     def fallback(self, source, default):
         """The value a socket has beside its unsupported link."""

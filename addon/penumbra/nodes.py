@@ -3,7 +3,7 @@
 
 from typing import NamedTuple
 
-from . import environment
+from . import environment, images
 
 
 class Source(NamedTuple):
@@ -67,7 +67,8 @@ def constant(source, default):
 def _mean_color(source, warnings):
     """A constant colour, or the mean of an environment image; None if it is neither."""
     if source.output and source.output.node.type == 'TEX_ENVIRONMENT' and source.output.node.image:
-        return environment.mean(source.output.node.image, warnings)
+        node = source.output.node
+        return environment.mean(node.image, images.sequence_file(node.image, node.image_user), warnings)
     return constant(source, [1.0] * 3)
 
 

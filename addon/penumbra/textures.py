@@ -1,35 +1,57 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender image -> pnb_texture."""
 
-from array import array
+import os
+import time
+import zlib
 from ctypes import c_void_p
 
-from . import capi, color_spaces
+from . import capi, color_spaces, images
 from .names import name_of
 
-# Uses of an image: its colour, its alpha channel, or its brightness as alpha.
-COLOR, ALPHA, GREY = 'color', 'alpha', 'grey'
+# Uses of an image: its colour, which is its brightness where a number is asked for, or its alpha channel.
+COLOR, ALPHA = 'color', 'alpha'
+
+# Files that changed since then may not be what Blender had read before, or be read anew unnoticed.
+_start = time.time()
 
 
 class TextureCache:
-    """Textures of unedited image files, kept while an animation is rendered: images cannot be reloaded meanwhile."""
+    """Textures of image files, kept from export to export while they are sure to have the same content."""
 
-    def __init__(self):
-        self._kept = {}
+    def __init__(self, is_told=False):
+        """`is_told`: its owner clears it when Blender says that an image changed."""
+        self._kept = {}         # key: (state, handle, its lines of the report)
+        self._used = set()
+        self._is_told = is_told
 
-    def get(self, image, use, flags, warnings):
-        """(handle or None, whether the caller has to destroy it). `flags`: capi.TEXTURE_*."""
-        key = (image.library and image.library.filepath, name_of(image), use, flags)
-        state = (tuple(image.size), image.filepath, image.colorspace_settings.name, image.alpha_mode)
-        keep = image.source == 'FILE' and not image.is_dirty
-        if keep and self._kept.get(key, (None,))[0] == state:
-            return self._kept[key][1], False
-        handle = _create(image, use, flags, warnings)
-        if not keep or handle is None:
-            return handle, True
-        self._drop(key)
-        self._kept[key] = state, handle
-        return handle, False
+    def get(self, image, file, use, flags, warnings):
+        """(handle or None, whether the caller has to destroy it). `file`: see images.read; `flags`: capi.TEXTURE_*."""
+        key = (image.library and image.library.filepath, name_of(image), file, use, flags)
+        state = self._state(image, file)
+        self._used.add(key)
+        kept, handle, lines = self._kept.get(key, (None, None, []))
+        if state is None or kept != state:
+            lines = []
+            handle = _create(image, file, use, flags, lines)
+            if state and handle:
+                self._drop(key)
+                self._kept[key] = state, handle, lines
+        warnings.extend(lines)
+        return handle, not (state and handle)
+
+    def _state(self, image, file):
+        """What the texture depends on, or None if that cannot be told without reading all pixels."""
+        if image.is_dirty or not (file or image.source == 'FILE'):
+            return None
+        content = file or image.filepath if self._is_told else _content(image, file)
+        return content and (content, image.colorspace_settings.name, image.alpha_mode)
+
+    def end_export(self):
+        """Of a sequence, another picture comes with every frame: those that were not used are dropped."""
+        for key in [key for key in self._kept if key[2] and key not in self._used]:
+            self._drop(key)
+        self._used = set()
 
     def _drop(self, key):
         if key in self._kept:
@@ -43,6 +65,20 @@ class TextureCache:
 cache = TextureCache()
 
 
+def _content(image, file):
+    """Identifies the pixels of an unedited image by its file, without reading it; None if they may be of another one."""
+    if image.packed_file:
+        return image.packed_file.size, zlib.crc32(image.packed_file.data)
+    path = images.path_of(image, file)
+    try:
+        found = os.stat(path)
+    except (OSError, ValueError):
+        return None
+    if found.st_ctime > _start:
+        return None
+    return path, found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
 _EXTENSIONS = {'EXTEND': capi.TEXTURE_EXTEND, 'CLIP': capi.TEXTURE_CLIP, 'MIRROR': capi.TEXTURE_MIRROR}
 
 
@@ -52,31 +88,17 @@ def node_flags(node):
     return nearest | _EXTENSIONS.get(node.extension, 0)
 
 
-def pixels_of(image):
-    """Floats as RNA gives them, or None if the image is missing."""
-    width, height = image.size
-    if not width or not height:
+def _create(image, file, use, flags, warnings):
+    raster = images.read(image, file, warnings)
+    if raster is None:
         return None
-    pixels = array('f', bytes(4 * len(image.pixels)))
-    image.pixels.foreach_get(pixels)
-    return pixels if image.has_data else None
-
-
-def _create(image, use, flags, warnings):
-    width, height = image.size
-    pixels = pixels_of(image)
-    if pixels is None:
-        warnings.append(f"image '{name_of(image)}' is missing ({image.filepath or 'no file'})")
-        return None
-    if image.source in {'MOVIE', 'SEQUENCE', 'TILED'}:
-        warnings.append(f"image '{name_of(image)}': of a {image.source.lower()} only one picture is used")
-    channels = image.channels
-    first, count = _channels(channels, use)
-    desc = capi.TextureDesc(name=name_of(image).encode(), width=width, height=height, channels=count, flags=flags)
+    first, count = _channels(raster.channels, use)
+    desc = capi.TextureDesc(name=name_of(image).encode(), width=raster.width, height=raster.height, channels=count,
+                            flags=flags)
     if use != ALPHA:
-        desc.is_srgb = color_spaces.decode(pixels, channels, image, warnings)
-    desc.pixels.data = c_void_p(pixels.buffer_info()[0] + 4 * first)
-    desc.pixels.stride = 4 * channels
+        desc.is_srgb = color_spaces.decode(raster, image, warnings)
+    desc.pixels.data = c_void_p(raster.values.buffer_info()[0] + 4 * first)
+    desc.pixels.stride = 4 * raster.channels
     try:
         return capi.library().create('texture', desc)
     except capi.Error as error:
