@@ -26,6 +26,15 @@ PRINCIPLED_TRANSMISSION = 'Transmission Weight' if BLENDER_4 else 'Transmission'
 # Each of the two surfaces of a body of glass tints by its base colour, since 4.0 both together.
 TRANSMISSION_EXPONENT = 0.5 if BLENDER_4 else 1.0
 
+# (what is not drawn, input that asks for it) by the node's type.
+OMITTED_INPUTS = {
+    'BSDF_DIFFUSE': (("the roughness of its diffuse reflection", 'Roughness'),),
+    'BSDF_PRINCIPLED': (
+        ("metallic reflection", 'Metallic'), ("the roughness of its diffuse reflection", 'Diffuse Roughness'),
+        ("subsurface scattering", 'Subsurface Weight' if BLENDER_4 else 'Subsurface'),
+        ("sheen", 'Sheen Weight' if BLENDER_4 else 'Sheen'), ("coat", 'Coat Weight' if BLENDER_4 else 'Clearcoat')),
+}
+
 # Panels of other engines that fit this one too.
 ADOPTED_PANELS = ('EEVEE_MATERIAL_PT_context_material', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface')
 

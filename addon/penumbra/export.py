@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import bpy
 
-from . import camera, capi, compat, lights, materials, nodes, settings, textures
+from . import camera, capi, compat, emission, lights, materials, settings, surfaces, textures
 from .geometry import MeshStore
 from .links import LightLinks
 from .mesh import NO_NEEDS
@@ -198,7 +198,7 @@ class SceneExport:
         material = self._override or material
         key = material.as_pointer() if material else None
         if key not in self._materials:
-            target = capi.Material(base_color=tuple(materials.GREY))
+            target = capi.Material(base_color=tuple(surfaces.GREY))
             needs = materials.fill_material(target, material, self._texture, self.warnings) if material else NO_NEEDS
             index = len(self._material_list)
             self._materials[key] = ExportedMaterial(index, needs)
@@ -239,9 +239,8 @@ class SceneExport:
     def _set_world(self, world):
         if world is None:
             return
-        self._owners['world'] = owner = f"world '{name_of(world)}'"
-        uses_nodes = compat.uses_nodes(world)
-        self.scene.world_color[:] = nodes.emission(world.node_tree, owner, self.warnings) if uses_nodes else world.color
+        self._owners['world'] = f"world '{name_of(world)}'"
+        self.scene.world_color[:] = emission.of_world(world, self.warnings)
 
 
 def write_capture(path, scene, settings):

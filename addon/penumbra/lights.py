@@ -3,7 +3,7 @@
 
 from math import pi, sqrt, tan
 
-from . import capi, compat, nodes, props
+from . import capi, compat, emission, props
 from .names import name_of
 
 SMALLEST_MAP = 16   # texels per side that the library allows
@@ -51,7 +51,7 @@ def _color(light, name, warnings):
     color = compat.light_color(light)
     if not compat.uses_nodes(light):
         return color
-    tint = nodes.emission(light.node_tree, f"light '{name}'", warnings)
+    tint = emission.of_tree(light.node_tree, f"light '{name}'", warnings)
     return [a * b for a, b in zip(color, tint)]
 
 

@@ -3,7 +3,7 @@
 
 from mathutils import Euler, Matrix, Vector
 
-from . import nodes
+from . import values
 from .names import name_of
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -45,7 +45,7 @@ def _scaled(scale):
 def _vector(source, name, default, warn):
     if name not in source.output.node.inputs:
         return Vector([default] * 3)
-    value = nodes.constant(source.input(name), [default] * 3)
+    value = values.constant(source.input(name), [default] * 3)
     if value is None:
         warn(f"nodes linked to '{name}' of {source.output.node.name} are not supported, the socket's own value counts")
         value = source.output.node.inputs[name].default_value

@@ -165,3 +165,8 @@ class Kinds(TextureTest):
         self.assertTrue(any("of a movie only the first picture" in line for line in lines), lines)
         red = self.render()['ViewLayer.Combined.R'][2]
         self.assertAlmostEqual(red[len(red) // 2], 0.5, delta=0.05)
+
+    def test_projection(self):
+        self.load(self.write(output('boxed.png'), 0.5))
+        self.node.projection = 'BOX'
+        self.assertTrue(any("material 'Test'" in line and "projection BOX" in line for line in self.lines()))
