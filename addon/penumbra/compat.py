@@ -62,9 +62,9 @@ def release_mesh(mesh):
         mesh.free_normals_split()
 
 
-def mesh_arrays(mesh, uv_map='', color=None):
-    """The arrays of a prepared mesh. They are valid as long as the evaluated mesh is. `uv_map`: its name, else the one
-    for renders; `color`: name of a colour attribute, '' the one for renders, None without."""
+def mesh_arrays(mesh, uv_map=''):
+    """The arrays of a prepared mesh. They are valid as long as the evaluated mesh is. `uv_map`: its name; '': the one
+    for renders."""
     triangles = mesh.loop_triangles
     yield MeshArray('positions', 'f', 3, mesh.vertices, 'co', mesh.vertices)
     yield MeshArray('corner_vertices', 'I', 1, mesh.loops, 'vertex_index', mesh.loops)
@@ -72,7 +72,7 @@ def mesh_arrays(mesh, uv_map='', color=None):
         yield MeshArray('corner_normals', 'f', 3, mesh.corner_normals, 'vector', mesh.corner_normals)
     else:
         yield MeshArray('corner_normals', 'f', 3, mesh.loops, 'normal', None)
-    layer = mesh.uv_layers.get(uv_map) or next((layer for layer in mesh.uv_layers if layer.active_render), None)
+    layer = mesh.uv_layers.get(uv_map) if uv_map else next((each for each in mesh.uv_layers if each.active_render), None)
     if layer and hasattr(layer, 'uv'):
         yield MeshArray('corner_uvs', 'f', 2, layer.uv, 'vector', layer.uv)
     elif layer:
@@ -83,22 +83,9 @@ def mesh_arrays(mesh, uv_map='', color=None):
         yield MeshArray('triangle_polygons', 'I', 1, polygons, 'value', polygons)
     else:
         yield MeshArray('triangle_polygons', 'I', 1, triangles, 'polygon_index', triangles, 12)
-    yield from _color_arrays(mesh, color)
     slots = mesh.attributes.get('material_index')
     if slots and slots.domain == 'FACE' and slots.data_type == 'INT':
         yield MeshArray('polygon_materials', 'i', 1, slots.data, 'value', slots.data)
-
-
-def _color_arrays(mesh, name):
-    colors = mesh.color_attributes
-    if name is None or not len(colors):
-        return
-    index = getattr(colors, 'render_color_index', -1)
-    layer = colors.get(name) if name else colors[index if 0 <= index < len(colors) else 0]
-    if layer:
-        member = 'corner_colors' if layer.domain == 'CORNER' else 'vertex_colors'
-        # RGBA: the library reads the first three of each four. RNA turns bytes into linear numbers.
-        yield MeshArray(member, 'f', 4, layer.data, 'color', None)
 
 
 def light_casts_shadow(light):

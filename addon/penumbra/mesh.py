@@ -5,7 +5,7 @@ from array import array
 from ctypes import c_float, c_int32, c_uint32, c_void_p
 from typing import NamedTuple
 
-from . import capi, compat
+from . import attributes, capi, compat
 
 _CTYPES = {'f': c_float, 'I': c_uint32, 'i': c_int32}
 
@@ -26,18 +26,21 @@ def create_mesh(mesh, name, needs, use_pointers, warnings):
     """Handle of the library's copy, or None for a mesh without triangles. `needs`: of the material of each slot."""
     if not len(mesh.vertices) or not len(mesh.polygons):
         return None
+    def warn(text):
+        warnings.append(f"object '{name}': {text}")
+
     compat.prepare_mesh(mesh)
     try:
         desc = capi.MeshDesc(name=name.encode(), vertex_count=len(mesh.vertices), corner_count=len(mesh.loops),
                              triangle_count=len(mesh.loop_triangles), polygon_count=len(mesh.polygons))
         maps = dict.fromkeys(need.uv_map for need in needs)
-        color = next((need.color for need in needs if need.color is not None), None)
-        if any(need.color not in (None, color) for need in needs):
-            warnings.append(f"object '{name}': of its materials' colour attributes only the first is drawn")
+        for lost in [uv_map for uv_map in maps if uv_map and uv_map not in mesh.uv_layers]:
+            warn(f"it has no UV map '{lost}' and shows one texel of the image there")
         copies = [_fill(getattr(desc, source.member), source, use_pointers)
-                  for source in compat.mesh_arrays(mesh, next(iter(maps), ''), color)]
+                  for source in compat.mesh_arrays(mesh, next(iter(maps), ''))]
         if len(maps) > 1:
             copies.append(_fill_mixed_uvs(desc.corner_uvs, mesh, [need.uv_map for need in needs]))
+        copies.append(_fill_colors(desc, mesh, needs, warn))
         handle = capi.library().create('mesh', desc)
         del copies
     finally:
@@ -60,6 +63,20 @@ def _fill_mixed_uvs(target, mesh, maps):
             mixed[start:end] = layers[name][start:end]
     target.data, target.stride = c_void_p(mixed.buffer_info()[0]), 8
     return mixed
+
+
+def _fill_colors(desc, mesh, needs, warn):
+    """Colours of the attribute that its materials name; returns the copy, as _fill does."""
+    names = dict.fromkeys(need.color for need in needs if need.color is not None)
+    if not names:
+        return None
+    if len(names) > 1:
+        warn("of its materials' colour attributes only the first is drawn")
+    colors = attributes.read_colors(mesh, next(iter(names)), warn)
+    target = getattr(desc, colors.member)
+    # RGBA: the library reads the first three of each four.
+    target.data, target.stride = c_void_p(colors.values.buffer_info()[0]), 16
+    return colors.values
 
 
 def _fill(target, source, use_pointers):

@@ -66,7 +66,7 @@ cache = TextureCache()
 
 
 def _content(image, file):
-    """Identifies the pixels of an unedited image by its file, without reading it; None if they may be of another one."""
+    """Identifies the pixels of an unedited image by its file, without reading it; None if they may be others."""
     if image.packed_file:
         return image.packed_file.size, zlib.crc32(image.packed_file.data)
     path = images.path_of(image, file)
