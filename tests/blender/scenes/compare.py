@@ -23,6 +23,8 @@ from harness import ADDON, OUTPUT, read_exr, render_exr  # noqa: E402
 import frame_rows  # noqa: E402, F401
 import material_rows  # noqa: E402, F401
 import scene_rows  # noqa: E402, F401
+import texture_rows  # noqa: E402, F401
+import world_rows  # noqa: E402, F401
 from rows import ROWS, Stage  # noqa: E402
 
 VERSION = '.'.join(map(str, bpy.app.version[:2]))

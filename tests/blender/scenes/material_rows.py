@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials and worlds."""
+"""Materials."""
 
 import os
 
@@ -53,6 +53,20 @@ def picture(name="Picture", side=6, float_buffer=False, alpha=None, color_space=
             values.extend([*rgb, alpha(x, y) if alpha else 1.0])
     image.pixels.foreach_set(values)
     image.update()
+    return image
+
+
+def picture_files(stage, name, colors):
+    """A sequence of pictures in files; `colors`: functions of a texel's place."""
+    paths = []
+    for number, color in enumerate(colors, start=1):
+        image = picture(color=color)
+        image.filepath_raw, image.file_format = os.path.join(stage.folder, f'{name}.{number:04d}.png'), 'PNG'
+        image.save()
+        paths.append(image.filepath_raw)
+        bpy.data.images.remove(image)
+    image = bpy.data.images.load(paths[0])
+    image.source = 'SEQUENCE'
     return image
 
 
@@ -464,44 +478,25 @@ def unsupported_shader(stage):
     bpy.data.objects["Cube.001"].visible_camera = False
 
 
-# The floor is lit by all of the upper half of the world; nothing is over it.
-def _world(stage, build):
-    stage.scene.render.film_transparent = False
-    world = bpy.data.worlds.new("World")
-    world.use_nodes = True
-    build(world.node_tree, next(node for node in world.node_tree.nodes if node.type == 'BACKGROUND'))
-    stage.scene.world = world
+@row('materials')
+def volume_only(stage):
+    """Only a volume: no surface is seen and casts a shadow, and the volume is not drawn."""
+    nodes = Nodes()
+    nodes.link(nodes.add('VolumeAbsorption').outputs[0], nodes.output.inputs['Volume'])
+    stage.cube(material=nodes.material)
+    stage.cube(half=0.2, location=(0.7, 0.5, 0.4))
+    stage.for_cycles = lambda: nodes.surface(nodes.add('BsdfTransparent').outputs[0]) and _unlink(nodes, 'Volume')
+
+
+def _unlink(nodes, name):
+    nodes.tree.links.remove(nodes.output.inputs[name].links[0])
 
 
 @row('materials')
-def world_colour(stage):
-    """World colour and strength as ambient light and background."""
-    def build(_tree, background):
-        background.inputs['Color'].default_value = 0.3, 0.5, 0.9, 1
-        background.inputs['Strength'].default_value = 0.5
-    _world(stage, build)
-
-
-@row('materials', until=(5, 0))
-def world_without_nodes(stage):
-    """`use_nodes` of the world off: its own colour. From Blender 5 on nodes are always used."""
-    _world(stage, lambda _tree, _background: None)
-    stage.scene.world.use_nodes = False
-    stage.scene.world.color = 0.2, 0.3, 0.1
-
-
-@row('materials')
-def world_environment(stage):
-    """An environment image, of one colour here: its mean is the ambient light."""
-    def build(tree, background):
-        texture = tree.nodes.new('ShaderNodeTexEnvironment')
-        texture.image = picture(float_buffer=True, color=lambda _x, _y: [0.4, 0.3, 0.2])
-        tree.links.new(texture.outputs[0], background.inputs['Color'])
-    _world(stage, build)
-
-
-@row('materials')
-def world_none(stage):
-    """No world: black."""
-    stage.scene.render.film_transparent = False
-    stage.cube()
+def colour_as_surface(stage):
+    """A colour linked in place of a shader is emitted."""
+    nodes = Nodes()
+    rgb = nodes.add('RGB')
+    rgb.outputs[0].default_value = 0.2, 0.7, 0.4, 1
+    stage.cube(material=nodes.surface(rgb.outputs[0]))
+    stage.for_cycles = lambda: _lights_nothing(nodes.material)
