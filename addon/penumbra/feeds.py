@@ -81,8 +81,8 @@ class FeedReader:
     def _unknown(self, source):
         value = self._constant_leaf(source)
         if value is None:
-            self.warn(f"node {name_of(source.output.node)} is not supported in '{source.socket.name}', the socket's own "
-                      "value counts")
+            self.warn(f"node {name_of(source.output.node)} is not supported in '{source.socket.name}', the socket's "
+                      "own value counts")
             value = values.own(source, 0.0)
         return value
 

@@ -34,7 +34,7 @@ def _mapping(source, warn):
     if node.vector_type == 'VECTOR':
         return turn @ _scaled(scale)
     if node.vector_type == 'NORMAL':
-        warn(f"node {node.name}: the kind Normal is not supported, it is taken for Point")
+        warn(f"node {name_of(node)}: the kind Normal is not supported, it is taken for Point")
     return Matrix.Translation(location) @ turn @ _scaled(scale)
 
 
@@ -47,7 +47,8 @@ def _vector(source, name, default, warn):
         return Vector([default] * 3)
     value = values.constant(source.input(name), [default] * 3)
     if value is None:
-        warn(f"nodes linked to '{name}' of {source.output.node.name} are not supported, the socket's own value counts")
+        warn(f"nodes linked to '{name}' of {name_of(source.output.node)} are not supported, the socket's own value "
+             "counts")
         value = source.output.node.inputs[name].default_value
     return Vector(value[:3] if hasattr(value, '__len__') else [value] * 3)
 
@@ -61,5 +62,5 @@ def _uv_map(source, texture, warn):
     if node.type == 'ATTRIBUTE':
         return node.attribute_name
     if not (node.type == 'TEX_COORD' and source.output.name == 'UV'):
-        warn(f"image '{name_of(texture.image)}' is placed by the UV map for renders, without {node.name}")
+        warn(f"image '{name_of(texture.image)}' is placed by the UV map for renders, without {name_of(node)}")
     return ''
