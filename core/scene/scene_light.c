@@ -23,11 +23,26 @@ static float clamped(float value, float minimum, float maximum, const char *name
     return result;
 }
 
+/* Makes sizes positive. */
+static void light_resolve_signs(struct scene_light *light, const char *name, struct messages *messages) {
+    const struct {
+        float *value;
+        const char *what;
+    } sizes[] = {{&light->size[0], "width"},
+                 {&light->size[1], "height"},
+                 {&light->radius, "radius"},
+                 {&light->angle, "angle"},
+                 {&light->spot_angle, "cone angle"}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        float size = fabsf(*sizes[i].value);
+        *sizes[i].value = clamped(*sizes[i].value, size, size, name, sizes[i].what, messages);
+    }
+}
+
 /* Makes both sides wide enough to be an emitter. */
 static void light_resolve_size(struct scene_light *light) {
     for (int i = 0; i < 2; i++) {
         float scale = axis_length(light->matrix + 4 * i), smallest = SCENE_MIN_EMITTER / scale;
-        light->size[i] = fabsf(light->size[i]);
         light->size[i] = light->size[i] < smallest ? smallest : light->size[i];
     }
 }
@@ -63,13 +78,13 @@ static void light_copy(const pnb_light *from, struct scene_light *to) {
         to->spread = from->spread;
     }
     if (from->type == PNB_LIGHT_POINT || from->type == PNB_LIGHT_SPOT) {
-        to->radius = fabsf(from->radius);
+        to->radius = from->radius;
     }
     if (from->type == PNB_LIGHT_SUN) {
-        to->angle = fabsf(from->angle);
+        to->angle = from->angle;
     }
     if (from->type == PNB_LIGHT_SPOT) {
-        to->spot_angle = from->spot_angle != 0 ? fabsf(from->spot_angle) : DEFAULT_SPOT_ANGLE;
+        to->spot_angle = from->spot_angle != 0 ? from->spot_angle : DEFAULT_SPOT_ANGLE;
         to->spot_blend = from->spot_blend;
     }
 }
@@ -109,6 +124,7 @@ bool light_resolve(const pnb_light *from, const char *name, struct messages *mes
     for (int i = 0; i < 3; i++) {
         to->emission[i] = clamped(to->emission[i], 0, LARGEST_NUMBER, name, "emission", messages);
     }
+    light_resolve_signs(to, name, messages);
     light_resolve_shadow_color(from->shadow_color, name, messages, to->shadow_color);
     light_resolve_axes(to, name, messages);
     if (to->type == PNB_LIGHT_AREA) {

@@ -276,7 +276,8 @@ static void bad_lights(void) {
     ROW(PNB_OK, "light 'Spot': dropped", room.lights[ROOM_SPOT].spot_angle = NAN);
     ROW(PNB_OK, "", LAMPS(FILL(light->size, 0); light->radius = light->angle = 0));
     ROW(PNB_OK, "", LAMPS(light->size[0] = 0));
-    ROW(PNB_OK, "", LAMPS(FILL(light->size, -1); light->radius = light->angle = -0.3f));
+    ROW(PNB_OK, "light 'Area': its height of -1 is taken as 1",
+        LAMPS(FILL(light->size, -1); light->radius = light->angle = -0.3f));
     ROW(PNB_OK, "", LAMPS(FILL(light->size, 1e-30f); light->radius = light->angle = 1e-30f));
     ROW(PNB_OK, "", LAMPS(FILL(light->size, 1e6f); light->radius = 1e6f; light->angle = 3));
     ROW(PNB_OK, "light 'Point': dropped", LAMPS(FILL(light->size, 1e17f); light->radius = 1e17f; light->angle = 1e17f));

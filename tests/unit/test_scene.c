@@ -324,7 +324,19 @@ static void light_values_are_clamped(void **state) {
     assert_told(fixture, "light 'light': its cone angle of 4");
     assert_told(fixture, "light 'light': its cone blend of -1");
     assert_told(fixture, "light 'Sun': its angle of 3.5");
-    assert_false(was_told(fixture, "'Lamp'")); /* small and mirrored sizes are ordinary */
+    assert_told(fixture, "light 'Lamp': its width of -0.5 is taken as 0.5");
+    assert_false(was_told(fixture, "'Lamp': its height")); /* of 0: small sizes are ordinary */
+    assert_told(fixture, "light 'Bulb': its radius of -0.1 is taken as 0.1");
+}
+
+static void negative_angles_are_told(void **state) {
+    struct fixture *fixture = *state;
+    fixture->example.lights[2].spot_angle = -1;
+    fixture->example.lights[3].angle = -0.5f;
+    const struct scene *scene = create(fixture);
+    assert_true(scene->lights[2].spot_angle == 1 && scene->lights[3].angle == 0.5f);
+    assert_told(fixture, "light 'light': its cone angle of -1 is taken as 1");
+    assert_told(fixture, "light 'Sun': its angle of -0.5 is taken as 0.5");
 }
 
 static void light_defaults_are_filled_in(void **state) {
@@ -538,6 +550,7 @@ int main(void) {
         TEST(world_is_clamped),
         TEST(unusable_lights_are_dropped),
         TEST(light_values_are_clamped),
+        TEST(negative_angles_are_told),
         TEST(light_defaults_are_filled_in),
         TEST(singular_lights_get_axes),
         TEST(light_names_are_unique),
