@@ -33,14 +33,16 @@ const float PI = 3.14159265;
 #define LIGHT_VIEW(layer) light.views[layer]
 #endif
 
+vec3 in_light_frame(vec3 d) {
+    return vec3(dot(d, light.frame_x.xyz), dot(d, light.frame_y.xyz), dot(d, light.frame_z.xyz));
+}
+
 // Map layer that holds a receiver, or -1 if no caster can shadow it.
 int light_layer(vec3 position) {
 #ifdef SINGLE_VIEW
     return light.faces_a.x;
 #else
-    vec3 d = position - light.position.xyz;
-    vec3 local = vec3(dot(d, light.frame_x.xyz), dot(d, light.frame_y.xyz), dot(d, light.frame_z.xyz));
-    vec3 a = abs(local);
+    vec3 local = in_light_frame(position - light.position.xyz), a = abs(local);
     if (a.z >= a.x && a.z >= a.y)
         return local.z >= 0.0 ? light.faces_a.x : light.faces_b.y;
     if (a.x >= a.y)
@@ -55,28 +57,59 @@ float smooth_integral(float t) {
     return inside * inside * inside * (1.0 - 0.5 * inside) + max(t - 1.0, 0.0);
 }
 
-// Share of a SPOT's intensity in the direction of a point, with the smooth edge Blender draws. Each point of its bulb has a
-// cone of its own: the edge is averaged over two overlapping intervals, whose second and fourth moments are those of a disk.
-float light_cone(vec3 position) {
-    vec3 d = position - light.position.xyz;
-    vec3 local = vec3(dot(d, light.frame_x.xyz) / light.cone.z, dot(d, light.frame_y.xyz) / light.cone.w,
-                      dot(d, light.frame_z.xyz));
+// Mean of smoothstep(0, 1, x) for x within s of t. Differences of integrals lose their digits where s is small.
+float smooth_mean(float t, float s) {
+    float near = clamp(t, -s, 1.0 + s);
+    return s > 0.01 ? (smooth_integral(near + s) - smooth_integral(near - s)) / (2.0 * s) : smoothstep(0.0, 1.0, t);
+}
+
+// Cosine to a SPOT's axis of a vector in its frame, in the space that the light's scale makes.
+float cone_cosine(vec3 d) {
+    vec3 local = vec3(d.xy / light.cone.zw, d.z);
+    return local.z * inversesqrt(max(dot(local, local), 1e-24));
+}
+
+// How the cosine grows with the vector.
+vec3 cone_gradient(vec3 d, float cosine) {
+    vec3 local = vec3(d.xy / light.cone.zw, d.z);
     float far = max(length(local), 1e-12);
-    float c = local.z / far, radius = light.emission.w;
-    float width = (1.0 - light.cone.x) * light.cone.y;
-    width = radius > 0.0 ? max(width, 1e-4) : width;
-    float edge = c > light.cone.x ? 1.0 : 0.0, spread = 0.0;
-    float t = (c - light.cone.x) / max(width, 1e-12);
-    if (radius > 0.0)
-        spread = min(radius * length(vec3(c * local.xy / (far * light.cone.zw), 1.0 - c * c)) / (far * width), 1e3);
-    if (c <= 0.0) // where no view of the map looks
+    return vec3(-cosine * local.xy / (far * light.cone.zw), 1.0 - cosine * cosine) / far;
+}
+
+// At least how much the cosine to a point differs over a SPOT's bulb.
+float cone_slack(vec3 d, vec3 gradient) {
+    float bend = light.emission.w / min(min(light.cone.z, light.cone.w), 1.0);
+    return 1.2 * light.emission.w * length(gradient) + bend * bend / dot(d, d);
+}
+
+// Whether any of a SPOT's light has a vector in its cone. No view of the map looks behind it.
+bool cone_reaches(float cosine, float slack) {
+    return cosine > 0.0 && cosine + slack > light.cone.x;
+}
+
+// Share of a SPOT's intensity in the direction of a point, with the smooth edge Blender draws. Each point of its bulb has a
+// cone of its own: the edge is averaged over seven small disks in the bulb's, whose second moments are together those of the
+// bulb, and over an interval in each, whose second moment is that of the small disk.
+float light_cone(vec3 position) {
+    vec3 d = in_light_frame(position - light.position.xyz);
+    float c = cone_cosine(d), start = light.cone.x, radius = light.emission.w, edge = c > start ? 1.0 : 0.0;
+    vec3 gradient = cone_gradient(d, c);
+    float width = max((1.0 - start) * light.cone.y, radius > 0.0 ? 1e-4 : 0.0), slack = cone_slack(d, gradient);
+    if (!cone_reaches(c, slack))
+        return 0.0;
+    if (radius > 0.0 && c - slack < start + width) {
+        const vec2 places[7] = vec2[7](vec2(0.0), vec2(0.70710678, 0.0), vec2(-0.70710678, 0.0), vec2(0.35355339, 0.61237244),
+                                       vec2(-0.35355339, 0.61237244), vec2(0.35355339, -0.61237244),
+                                       vec2(-0.35355339, -0.61237244));
+        vec3 across = radius / max(length(gradient), 1e-12) * gradient, along = cross(normalize(d), across);
         edge = 0.0;
-    else if (spread > 0.01)
-        edge = (smooth_integral(t + 0.978148 * spread) - smooth_integral(t - 0.669128 * spread) +
-                smooth_integral(t + 0.669128 * spread) - smooth_integral(t - 0.978148 * spread)) / (3.294552 * spread);
-    else if (width > 0.0)
-        edge *= smoothstep(0.0, 1.0, t);
-    return light.frame_y.w != 0.0 ? edge * max(c, 0.0) : edge;
+        for (int i = 0; i < 7; i++) {
+            float cosine = cone_cosine(d - places[i].x * across - places[i].y * along);
+            edge += smooth_mean((cosine - start) / width, 0.32732684 * radius * length(gradient) / width) / 7.0;
+        }
+    } else if (width > 0.0)
+        edge *= smoothstep(start, start + width, c);
+    return light.frame_y.w != 0.0 ? edge * c : edge;
 }
 
 #ifdef SPREAD
@@ -98,7 +131,9 @@ bool light_reaches(vec3 position, vec3 normal) {
     if (LIGHT_TYPE == AREA)
         return dot(to_light, light.frame_z.xyz) < 0.0 &&
                dot(normal, to_light) + abs(dot(normal, light.half_u.xyz)) + abs(dot(normal, light.half_v.xyz)) > 0.0;
-    if (LIGHT_TYPE == SPOT && light_cone(position) <= 0.0)
+    vec3 d = in_light_frame(-to_light);
+    float cosine = cone_cosine(d);
+    if (LIGHT_TYPE == SPOT && !cone_reaches(cosine, cone_slack(d, cone_gradient(d, cosine))))
         return false;
     return dot(normal, to_light) > -light.emission.w;
 }
