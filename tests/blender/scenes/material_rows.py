@@ -410,7 +410,7 @@ def display_colour(stage):
 
 @row('materials')
 def no_material(stage):
-    """No material at all: grey 0.8."""
+    """No material at all: grey 0.8. From Blender 5 on Cycles' has the highlight of a Principled surface, too."""
     ob = stage.cube()
     ob.data.materials.clear()
 
