@@ -25,7 +25,8 @@ void main() {
     vec3 n = octahedral_decode(vertex_normal);
     normal = vec3(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n));
     float side = dot(a, cross(b, c)) < 0.0 ? -1.0 : 1.0;
-    normal *= side;
+    // Of length 1 before it is interpolated, as Cycles and EEVEE have it: an uneven scale would favour some of the corners.
+    normal *= side * inversesqrt(max(dot(normal, normal), 1e-37));
 #ifdef SPECIAL
     mirrored = side < 0.0 ? 1 : 0;
     tint = vertex_color * vertex_color;

@@ -342,14 +342,14 @@ def library_override(stage):
 
 # ---- Transformations and materials ----
 
-@row('scene')
+@row('scene', light=0.012, position=0.05)
 def mirrored(stage):
     """A mirrored, smooth object."""
     ob = _sphere(stage, smooth=True)
     ob.scale = -1, 1, 0.6
 
 
-@row('scene')
+@row('scene', light=0.012, position=0.05)
 def scaled_unevenly(stage):
     """A sheared object: an uneven scale above a turned one."""
     parent = add_object("Parent", None, scale=(1.6, 0.5, 1))
