@@ -102,10 +102,12 @@ float light_cone(vec3 position) {
                                        vec2(-0.35355339, 0.61237244), vec2(0.35355339, -0.61237244),
                                        vec2(-0.35355339, -0.61237244));
         vec3 across = radius / max(length(gradient), 1e-12) * gradient, along = cross(normalize(d), across);
+        // The cosine grows with the sine of the same angle.
+        float growth = 0.32732684 * radius * length(gradient) * inversesqrt(max(1.0 - c * c, 1e-12)) / width;
         edge = 0.0;
         for (int i = 0; i < 7; i++) {
             float cosine = cone_cosine(d - places[i].x * across - places[i].y * along);
-            edge += smooth_mean((cosine - start) / width, 0.32732684 * radius * length(gradient) / width) / 7.0;
+            edge += smooth_mean((cosine - start) / width, growth * sqrt(max(1.0 - cosine * cosine, 0.0))) / 7.0;
         }
     } else if (width > 0.0)
         edge *= smoothstep(start, start + width, c);

@@ -17,15 +17,15 @@ struct light_case {
 };
 
 /* Of the error, as a share of the brightest; 0: 1 % of that and of each pixel. The edge of a cone is averaged over
- * seven parts of the bulb. Soft, with bulbs of a fifth of the distance and of a hundredth, it is off by .0061 and
- * .00006 (by one part by .062 and .0005); hard, with one of a fifth, by .0235 (.055); with a bulb wider than the cone
- * by .063 (.505). */
+ * seven parts of the bulb. Soft, with bulbs of a fifth of the distance and of a hundredth, it is off by .0053 and
+ * .00006 (by one part by .062 and .0005); hard, with one of a fifth, by .0186 (.055); with a bulb wider than the cone
+ * by .038 (.505). */
 static double limit_of(const pnb_light *light) {
     if (light->type != PNB_LIGHT_SPOT || light->radius == 0)
         return 0;
     if (light->spot_blend == 0)
-        return 0.025;
-    return light->radius > light->spot_angle ? 0.07 : light->radius > 0.1f ? 0.007 : 0.0001;
+        return 0.02;
+    return light->radius > light->spot_angle ? 0.042 : light->radius > 0.1f ? 0.006 : 0.0001;
 }
 
 #define LIGHT(...)                                                                                                     \
