@@ -84,17 +84,25 @@ class Kept:
     """Meshes and textures kept from one export of a viewport to the next while Blender says that they did not change."""
 
     def __init__(self):
-        self.textures = textures.TextureCache(is_told=True)
+        self.textures = textures.TextureCache(watches=True)
         self._meshes = {}       # (address of the evaluated data, needs): (what identifies its content, handle)
         self._used = set()
         self._changed = None    # see changed_data
+        self._changed_images = set()
 
     def begin(self, changed):
         """Before an export, which must be the only one from then on."""
         self._used = set()
         self._changed = changed
+        self.textures.forget(self._changed_images)
+        self._changed_images = set()
         if changed is None or any(image.as_pointer() in changed for image in bpy.data.images):
             self.textures.clear()
+
+    def has_changed_images(self):
+        """Whether there is anything to export for which Blender sends no update."""
+        self._changed_images = self.textures.changed()
+        return bool(self._changed_images)
 
     def mesh(self, ob, needs, create):
         """`needs`: see mesh.Needs."""

@@ -2,6 +2,7 @@
 """Pixels of Blender's images: of the file of a sequence that a node shows at this frame, too."""
 
 import os
+import zlib
 from array import array
 from typing import NamedTuple
 
@@ -41,6 +42,12 @@ def read(image, file, warnings):
     elif image.source == 'TILED':
         warnings.append(f"image '{name_of(image)}': of its tiles only the first is used")
     return raster
+
+
+def checksum(image):
+    """Of its pixels; None without any."""
+    raster = _read(image)
+    return raster and zlib.adler32(raster.values)
 
 
 def _read_file(image, file):

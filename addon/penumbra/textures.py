@@ -6,6 +6,8 @@ import time
 import zlib
 from ctypes import c_void_p
 
+import bpy
+
 from . import capi, color_spaces, images
 from .names import name_of
 
@@ -17,13 +19,14 @@ _start = time.time()
 
 
 class TextureCache:
-    """Textures of image files, kept from export to export while they are sure to have the same content."""
+    """Textures kept from export to export while their images are sure to have the same content."""
 
-    def __init__(self, is_told=False):
-        """`is_told`: its owner clears it when Blender says that an image changed."""
+    def __init__(self, watches=False):
+        """`watches`: its owner asks it for changes between exports, instead of having young files read anew."""
         self._kept = {}         # key: (state, handle, its lines of the report)
-        self._used = set()
-        self._is_told = is_told
+        self._used = set()      # keys, by the export that is made
+        self._seen = {}         # key: _signature of the image at the last export
+        self._watches = watches
 
     def get(self, image, file, use, flags, warnings):
         """(handle or None, whether the caller has to destroy it). `file`: see images.read; `flags`: capi.TEXTURE_*."""
@@ -37,21 +40,34 @@ class TextureCache:
             if state and handle:
                 self._drop(key)
                 self._kept[key] = state, handle, lines
+        if self._watches:
+            self._seen[key] = _signature(_image(*key[:2]))
         warnings.extend(lines)
         return handle, not (state and handle)
 
     def _state(self, image, file):
         """What the texture depends on, or None if that cannot be told without reading all pixels."""
-        if image.is_dirty or not (file or image.source == 'FILE'):
-            return None
-        content = file or image.filepath if self._is_told else _content(image, file)
+        if file or image.source == 'FILE' and not image.is_dirty:
+            content = _content(image, file, self._watches)
+        else:
+            content = images.checksum(image) if self._watches else None
         return content and (content, image.colorspace_settings.name, image.alpha_mode)
 
     def end_export(self):
         """Of a sequence, another picture comes with every frame: those that were not used are dropped."""
         for key in [key for key in self._kept if key[2] and key not in self._used]:
             self._drop(key)
+        self._seen = {key: signature for key, signature in self._seen.items() if key in self._used}
         self._used = set()
+
+    def changed(self):
+        """Names and libraries of images that were painted or reloaded since the last export: Blender draws a viewport
+        again then, without an update."""
+        return {key[:2] for key, signature in self._seen.items() if signature != _signature(_image(*key[:2]))}
+
+    def forget(self, changed):
+        for key in [key for key in self._kept if key[:2] in changed]:
+            self._drop(key)
 
     def _drop(self, key):
         if key in self._kept:
@@ -60,23 +76,40 @@ class TextureCache:
     def clear(self):
         for key in list(self._kept):
             self._drop(key)
+        self._seen = {}
 
 
 cache = TextureCache()
 
 
-def _content(image, file):
-    """Identifies the pixels of an unedited image by its file, without reading it; None if they may be others."""
-    if image.packed_file:
-        return image.packed_file.size, zlib.crc32(image.packed_file.data)
-    path = images.path_of(image, file)
+def _image(library, name):
+    return bpy.data.images.get((name, library)) if library else bpy.data.images.get(name)
+
+
+def _signature(image):
+    """Differs once the image is painted or reloaded, which frees its pixels."""
+    if image is None:
+        return None
+    is_file = image.source == 'FILE' and not image.is_dirty
+    return (image.has_data, image.is_dirty, is_file and _date(images.path_of(image)),
+            image.is_dirty and images.checksum(image))
+
+
+def _date(path):
     try:
         found = os.stat(path)
     except (OSError, ValueError):
         return None
-    if found.st_ctime > _start:
-        return None
     return path, found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
+def _content(image, file, watches):
+    """Identifies the pixels of an unedited image by its file, without reading it; None if they may be others."""
+    if image.packed_file:
+        return image.packed_file.size, 0 if watches else zlib.crc32(image.packed_file.data)
+    date = _date(images.path_of(image, file))
+    is_young = date is not None and date[-1] > _start * 1e9
+    return None if is_young and not watches else date
 
 
 _EXTENSIONS = {'EXTEND': capi.TEXTURE_EXTEND, 'CLIP': capi.TEXTURE_CLIP, 'MIRROR': capi.TEXTURE_MIRROR}

@@ -144,6 +144,8 @@ class Viewport:
         else:
             self._schedule(context, depsgraph)
         self._take_picture()
+        if self.is_at_rest() and self._kept.has_changed_images():   # looks at all pixels of painted ones
+            self._update(context, depsgraph)
 
     # ---- Deciding what to render ----
 

@@ -3,7 +3,7 @@
 
 import bpy
 
-from harness import add_cube, add_light, white_material
+from harness import add_cube, add_light, output, white_material
 from window import ViewportTest, psnr, read_picture
 
 
@@ -22,7 +22,7 @@ class Picture(ViewportTest):
         self.assertGreaterEqual(value, 40.0)
 
 
-class Edits(ViewportTest):
+class EditTest(ViewportTest):
     """After each edit the picture has changed, and equals that of a new engine bit by bit."""
 
     def setUp(self):
@@ -45,6 +45,8 @@ class Edits(ViewportTest):
         with self.window():
             bpy.ops.ed.undo_push(message=name)
 
+
+class Edits(EditTest):
     def test_objects(self):
         cube = bpy.data.objects["Cube"]
         yield from self.check("begin")
@@ -152,3 +154,52 @@ class Edits(ViewportTest):
         with self.in_viewport():
             bpy.ops.object.mode_set(mode='OBJECT')
         self.assertTrue(self.before == (yield from self.shown("object mode again")))
+
+
+class Textures(EditTest):
+    """Images that change while a viewport shows them."""
+
+    def setUp(self):
+        super().setUp()
+        material = white_material("Picture")
+        tree = material.node_tree
+        self.node = tree.nodes.new('ShaderNodeTexImage')
+        diffuse = next(node for node in tree.nodes if node.type == 'BSDF_DIFFUSE')
+        tree.links.new(self.node.outputs['Color'], diffuse.inputs['Color'])
+        floor = bpy.data.objects["Floor"]
+        floor.data.uv_layers.new(name="Map")
+        floor.data.materials[0] = material
+
+    def write(self, path, red):
+        image = bpy.data.images.new("Written", 4, 4)
+        image.pixels.foreach_set([red, 0.6, 0.2, 1.0] * 16)
+        image.filepath_raw, image.file_format = path, 'PNG'
+        image.save()
+        bpy.data.images.remove(image)
+        return path
+
+    def test_painting(self):
+        image = self.node.image = bpy.data.images.new("Painted", 4, 4)
+        for red in (0.2, 0.8):
+            image.pixels.foreach_set([red, 0.6, 0.2, 1.0] * 16)
+            image.update()
+            yield from self.check(f"painted {red}")
+
+    def test_reload(self):
+        path = self.write(output("reloaded.png"), 0.2)
+        image = self.node.image = bpy.data.images.load(path)
+        yield from self.check("loaded")
+        self.write(path, 0.8)
+        image.reload()
+        yield from self.check("reloaded")
+
+    def test_sequence(self):
+        """Loading a picture does not make the viewport export again and again."""
+        for frame in (1, 2, 3):
+            path = self.write(output(f"sequence.{frame:04d}.png"), frame / 4)
+        self.node.image = bpy.data.images.load(path)
+        self.node.image.source = 'SEQUENCE'
+        self.node.image_user.frame_duration, self.node.image_user.use_auto_refresh = 3, True
+        for frame in (1, 2, 3):
+            self.scene.frame_set(frame)
+            yield from self.check(f"sequence {frame}")
