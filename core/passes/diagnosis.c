@@ -100,18 +100,19 @@ static pnb_result diagnose_map(struct frame *frame, const struct frame_light *li
 }
 
 pnb_result pass_diagnosis(struct frame *frame, const struct frame_light *light) {
-    struct renderer *renderer = frame->renderer;
     frame->light = (uint32_t)(light - frame->lights);
     float *map = frame->images[IMAGE_SHADOW_MAPS][frame->light];
     for (int i = 0; i < frame->width * frame->height && map; i++)
         map[i] = NO_TEXEL;
     if (!light->shadow_map.id)
         return PNB_OK;
-    pnb_result result = timer_begin(&renderer->timer, "Diagnosis");
-    if (result == PNB_OK && wants_blockers(frame))
+    pnb_result result = pass_begin(frame, "Diagnosis");
+    if (result != PNB_OK)
+        return result;
+    if (wants_blockers(frame))
         result = diagnose_blockers(frame, light);
     if (result == PNB_OK && map)
         result = diagnose_map(frame, light);
-    timer_end(&renderer->timer, (uint64_t)frame->width * (uint64_t)frame->height * 16);
+    pass_end(frame, (uint64_t)frame->width * (uint64_t)frame->height * 16);
     return result;
 }

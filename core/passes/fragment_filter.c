@@ -131,13 +131,13 @@ pnb_result pass_fragment_filter(struct frame *frame, const struct light_views *v
     const uint64_t heads = top->first_head + (uint64_t)(top->side * top->side * views->count);
     pnb_result result = gl_buffer_ensure(gl, &lists->heads, 8 * heads, 8 * base_heads, what);
     if (result == PNB_OK)
-        result = timer_begin(&frame->renderer->timer, "Fragment filter");
+        result = pass_begin(frame, "Fragment filter");
     if (result != PNB_OK)
         return result;
     uint32_t cursor[2] = {lists->count, lists->count};
     for (uint32_t i = 1; i < lists->level_count && result == PNB_OK; i++)
         result = add_level(frame, &lists->levels[i], views, filter, what, lists, cursor);
-    timer_end(&frame->renderer->timer, lists->heads.bytes + lists->fragments.bytes);
+    pass_end(frame, lists->heads.bytes + lists->fragments.bytes);
     lists->count = cursor[0];
     return result;
 }

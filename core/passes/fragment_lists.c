@@ -77,7 +77,9 @@ static pnb_result draw_views(struct frame *frame, const struct light_views *view
                              const struct fragment_choice *choice, const struct gl_texture *map,
                              const struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
-    pnb_result result = timer_begin(&frame->renderer->timer, collect ? "Fragment collect" : "Fragment count");
+    pnb_result result = pass_begin(frame, collect ? "Fragment collect" : "Fragment count");
+    if (result != PNB_OK)
+        return result;
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
     if (views->clip_behind)
@@ -86,7 +88,7 @@ static pnb_result draw_views(struct frame *frame, const struct light_views *view
         result = draw_view(frame, views, collect, choice, map, i, lists);
     gl->Disable(GL_CLIP_DISTANCE0);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    timer_end(&frame->renderer->timer, collect ? lists->fragments.bytes : lists->heads.bytes);
+    pass_end(frame, collect ? lists->fragments.bytes : lists->heads.bytes);
     return result;
 }
 
@@ -97,7 +99,7 @@ static pnb_result draw_views(struct frame *frame, const struct light_views *view
 static pnb_result dispatch(struct frame *frame, const char *name, GLuint program, uint32_t heads, uint32_t per_group,
                            const struct fragment_lists *lists) {
     const struct gl *gl = frame->gl;
-    pnb_result result = timer_begin(&frame->renderer->timer, name);
+    pnb_result result = pass_begin(frame, name);
     if (result != PNB_OK)
         return result;
     fragment_lists_bind(gl, program, lists);
@@ -105,7 +107,7 @@ static pnb_result dispatch(struct frame *frame, const char *name, GLuint program
     const uint32_t groups = (heads + per_group - 1) / per_group;
     gl->DispatchCompute(groups < MOST_GROUPS ? groups : MOST_GROUPS, (groups + MOST_GROUPS - 1) / MOST_GROUPS, 1);
     gl->MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    timer_end(&frame->renderer->timer, 0);
+    pass_end(frame, 0);
     return gl_check(gl, name);
 }
 

@@ -26,19 +26,18 @@ static pnb_result convolve(struct frame *frame, const struct gl_texture *source,
 }
 
 pnb_result pass_gauss(struct frame *frame, struct gl_texture *texture, int width) {
-    struct renderer *renderer = frame->renderer;
     struct gl_texture rows = {0};
     pnb_result result =
         gl_texture_ensure(frame->gl, &rows, texture->format, texture->width, texture->height, texture->layers, 1);
     if (result == PNB_OK)
-        result = timer_begin(&renderer->timer, "Gaussian");
+        result = pass_begin(frame, "Gaussian");
     if (result == PNB_OK) {
         frame->gl->Disable(GL_DEPTH_TEST);
         frame->gl->Disable(GL_BLEND);
         result = convolve(frame, texture, &rows, width, false);
         if (result == PNB_OK)
             result = convolve(frame, &rows, texture, width, true);
-        timer_end(&renderer->timer, gl_texture_bytes(&rows));
+        pass_end(frame, gl_texture_bytes(&rows));
     }
     gl_texture_free(frame->gl, &rows);
     return result == PNB_OK ? gl_check(frame->gl, "Gaussian") : result;

@@ -51,7 +51,7 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
     const bool emissive = frame->scene->emissive, linked = frame->scene->light_linked;
     pnb_result result =
         ensure_gbuffer(renderer, (int)frame->settings->width, (int)frame->settings->height, emissive, linked);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "G-buffer")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "G-buffer")) != PNB_OK)
         return result;
     upload_camera(renderer, &frame->camera);
     const struct gl_target target = {.colors = {&renderer->gbuffer_depth, &renderer->gbuffer_normal,
@@ -97,7 +97,7 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
             renderer->scene, clip, PNB_INSTANCE_HIDDEN_FROM_CAMERA, 0,
             &(struct draw_programs){programs[0], programs[1], CASTERS_NONE, PNB_MATERIAL_CULL_CAMERA, false});
     gl->Disable(GL_SCISSOR_TEST);
-    timer_end(&renderer->timer,
+    pass_end(frame,
               gl_texture_bytes(&renderer->gbuffer_depth) + gl_texture_bytes(&renderer->gbuffer_normal) +
                   gl_texture_bytes(&renderer->gbuffer_color) + gl_texture_bytes(&renderer->gbuffer_emission) +
                   gl_texture_bytes(&renderer->gbuffer_z) + gl_texture_bytes(&renderer->gbuffer_links));

@@ -63,7 +63,7 @@ pnb_result pass_irradiance(struct frame *frame, const struct frame_light *light,
                     frame->scene->light_linked ? "#define LINKS\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Irradiance")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Irradiance")) != PNB_OK)
         return result;
     const struct gl_texture *share = if_made(&renderer->light_shadows[light - frame->lights]);
     const struct gl_target target = {
@@ -85,7 +85,7 @@ pnb_result pass_irradiance(struct frame *frame, const struct frame_light *light,
         draw_over(frame, program, tiles, false);
         result = gl_check(gl, "irradiance");
     }
-    timer_end(&renderer->timer,
+    pass_end(frame,
               gl_texture_bytes(&renderer->irradiance) + gl_texture_bytes(&renderer->unshadowed_irradiance));
     return result;
 }

@@ -15,7 +15,7 @@ pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struc
     GLuint program;
     if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK)
         return result;
-    if ((result = timer_begin(&renderer->timer, "Min-max pyramid")) != PNB_OK)
+    if ((result = pass_begin(frame, "Min-max pyramid")) != PNB_OK)
         return result;
     program_set_int(gl, program, "source", 0);
     for (int level = 0; level < levels; level++) {
@@ -28,6 +28,6 @@ pnb_result pass_min_max(struct frame *frame, const struct gl_texture *map, struc
         gl->DispatchCompute(groups, groups, (GLuint)map->layers);
         gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     }
-    timer_end(&renderer->timer, gl_texture_bytes(pyramid));
+    pass_end(frame, gl_texture_bytes(pyramid));
     return gl_check(gl, "min-max pyramid");
 }

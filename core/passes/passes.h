@@ -53,6 +53,12 @@ struct renderer {
     struct gl_texture light_shadows[MAX_LIGHTS];
 };
 
+/* pass.c: waits for what is queued, which would run before whatever comes next; CANCELLED if the job was. */
+pnb_result check_cancel(struct frame *frame);
+/* Begins and ends the timing of a pass. A cancel of a job that somebody watches is noticed before every pass. bytes: of
+ * the textures and buffers the pass owns. */
+pnb_result pass_begin(struct frame *frame, const char *name);
+void pass_end(struct frame *frame, uint64_t bytes);
 /* gbuffer.c: scene -> gbuffer_* of the frame's sample; whole: all of the full image, else only the crop. */
 pnb_result pass_gbuffer(struct frame *frame, bool whole);
 /* tiles.c: G-buffer -> box_buffer, tile_buffer: bounds of what each tile of the full image shows, relative world. */

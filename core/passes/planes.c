@@ -18,7 +18,7 @@ pnb_result pass_planes(struct frame *frame, struct frame_light *light) {
                                       .defines = {light_defines(&light->emitter, &light->views)}};
     GLuint program;
     if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK ||
-        (result = timer_begin(&renderer->timer, "Bounding planes")) != PNB_OK)
+        (result = pass_begin(frame, "Bounding planes")) != PNB_OK)
         return result;
     gl_texture_bind(gl, map, 0);
     gl_texture_bind(gl, planes, 1);
@@ -31,6 +31,6 @@ pnb_result pass_planes(struct frame *frame, struct frame_light *light) {
         gl->DispatchCompute(groups, groups, (GLuint)map->layers);
         gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
     }
-    timer_end(&renderer->timer, gl_texture_bytes(planes));
+    pass_end(frame, gl_texture_bytes(planes));
     return gl_check(gl, "bounding planes");
 }

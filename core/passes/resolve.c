@@ -146,7 +146,7 @@ static pnb_result resolve_image(struct frame *frame, int kind, uint32_t light, c
     float *scratch = memory_array(band, sizeof *scratch);
     if (!scratch)
         return PNB_ERROR_OUT_OF_MEMORY;
-    pnb_result result = timer_begin(&frame->renderer->timer, "Resolve and read-back");
+    pnb_result result = pass_begin(frame, "Resolve and read-back");
     if (result != PNB_OK) {
         memory_free(scratch);
         return result;
@@ -156,7 +156,7 @@ static pnb_result resolve_image(struct frame *frame, int kind, uint32_t light, c
         result =
             resolve_rows(frame, recipe, row, rows, scratch, pixels + (size_t)row * (size_t)frame->width * channels);
     }
-    timer_end(&frame->renderer->timer, band * sizeof *scratch);
+    pass_end(frame, band * sizeof *scratch);
     memory_free(scratch);
     return result;
 }

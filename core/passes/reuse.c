@@ -104,7 +104,7 @@ pnb_result pass_reuse(struct frame *frame) {
     static const struct program_desc desc = {.vertex = "pass_screen.vert", .fragment = "pass_reuse.frag"};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Reuse")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Reuse")) != PNB_OK)
         return result;
     const struct gl_target target = {.depth = &renderer->drawn};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) == PNB_OK) {
@@ -122,7 +122,7 @@ pnb_result pass_reuse(struct frame *frame) {
         gl->DepthFunc(GL_LESS);
         result = gl_check(gl, "reuse");
     }
-    timer_end(&renderer->timer, gl_texture_bytes(&renderer->drawn) + gl_texture_bytes(&renderer->key_depth) +
+    pass_end(frame, gl_texture_bytes(&renderer->drawn) + gl_texture_bytes(&renderer->key_depth) +
                                     gl_texture_bytes(&renderer->key_normal));
     return result;
 }

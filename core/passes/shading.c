@@ -82,7 +82,7 @@ pnb_result pass_shading(struct frame *frame, bool first) {
                                                   renderer->normal.id ? "#define NORMAL\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Shading")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Shading")) != PNB_OK)
         return result;
     const struct gl_target target = {
         .colors = {&renderer->combined, if_made(&renderer->shadowed), if_made(&renderer->unshadowed),
@@ -102,6 +102,6 @@ pnb_result pass_shading(struct frame *frame, bool first) {
         draw_screen(renderer);
         result = gl_check(gl, "shading");
     }
-    timer_end(&renderer->timer, sums_bytes(renderer));
+    pass_end(frame, sums_bytes(renderer));
     return result;
 }

@@ -42,7 +42,7 @@ pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
     pnb_result result = gl_texture_ensure(gl, map, GL_DEPTH_COMPONENT32F, side, side, views->count, 1);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Shadow map")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Shadow map")) != PNB_OK)
         return result;
     gl->Enable(GL_DEPTH_TEST);
     gl->DepthMask(GL_TRUE);
@@ -51,6 +51,6 @@ pnb_result pass_shadow_map(struct frame *frame, const struct light_views *views,
     for (int i = 0; i < views->count && result == PNB_OK; i++)
         result = draw_view(frame, views, translucency, map, i);
     gl->Disable(GL_CLIP_DISTANCE0);
-    timer_end(&renderer->timer, gl_texture_bytes(map));
+    pass_end(frame, gl_texture_bytes(map));
     return result;
 }

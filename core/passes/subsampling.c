@@ -34,7 +34,7 @@ pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light
         .defines = {light_defines(&light->emitter, &light->views), fragment_defines(frame, &light->lists)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Interpolation")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Interpolation")) != PNB_OK)
         return result;
     const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1};
     if ((result = gl_target_bind(gl, renderer->framebuffer, &target)) == PNB_OK &&
@@ -51,6 +51,6 @@ pnb_result pass_interpolate(struct frame *frame, const struct frame_light *light
         gl->Disable(GL_SCISSOR_TEST);
         result = gl_check(gl, "interpolation");
     }
-    timer_end(&renderer->timer, gl_texture_bytes(&renderer->coarse_visibility) + renderer->pixel_list.bytes);
+    pass_end(frame, gl_texture_bytes(&renderer->coarse_visibility) + renderer->pixel_list.bytes);
     return result;
 }

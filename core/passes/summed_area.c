@@ -25,7 +25,9 @@ pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums,
     const struct gl *gl = renderer->gl;
     const int side = table->width >> level;
     const GLuint blocks = (GLuint)(side + BLOCK - 1) / BLOCK;
-    pnb_result result = timer_begin(&renderer->timer, "Summed-area table");
+    pnb_result result = pass_begin(frame, "Summed-area table");
+    if (result != PNB_OK)
+        return result;
     /* A tile that lies in one block needs no sums of blocks. */
     const int steps = sums->tile > BLOCK ? 3 : 1;
     for (int step = 0; step < steps && result == PNB_OK; step++) {
@@ -42,6 +44,6 @@ pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums,
         gl->DispatchCompute(blocks, step == 0 ? blocks : 1, (GLuint)table->layers);
         gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     }
-    timer_end(&renderer->timer, gl_texture_bytes(table));
+    pass_end(frame, gl_texture_bytes(table));
     return result == PNB_OK ? gl_check(gl, "summed-area table") : result;
 }

@@ -63,7 +63,7 @@ pnb_result pass_tiles(struct frame *frame) {
     static const struct program_desc desc = {.compute = "pass_tiles.comp"};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Tiles")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Tiles")) != PNB_OK)
         return result;
     int counts[2];
     tile_counts(renderer, counts);
@@ -74,7 +74,7 @@ pnb_result pass_tiles(struct frame *frame) {
     gl->Uniform2iv(gl->GetUniformLocation(program, "tile_count"), 1, counts);
     gl->DispatchCompute((GLuint)(counts[0] + 7) / 8, (GLuint)(counts[1] + 7) / 8, 1);
     gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    timer_end(&renderer->timer, count * (sizeof(struct box) + TILE_BYTES));
+    pass_end(frame, count * (sizeof(struct box) + TILE_BYTES));
     return gl_check(gl, "tiles");
 }
 
@@ -104,7 +104,7 @@ pnb_result pass_classify(struct frame *frame, const struct frame_light *light) {
         .defines = {light_defines(&light->emitter, &light->views), technique_defines(light)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Tiles")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Tiles")) != PNB_OK)
         return result;
     int counts[2];
     tile_counts(renderer, counts);
@@ -117,7 +117,7 @@ pnb_result pass_classify(struct frame *frame, const struct frame_light *light) {
     program_set_int(gl, program, "tile_count", count);
     gl->DispatchCompute((GLuint)(count + 63) / 64, 1, 1);
     gl->MemoryBarrier(GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT);
-    timer_end(&renderer->timer, (size_t)count * sizeof(float));
+    pass_end(frame, (size_t)count * sizeof(float));
     return gl_check(gl, "classification");
 }
 

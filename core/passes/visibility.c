@@ -119,7 +119,7 @@ static pnb_result draw_pixels(struct frame *frame, const struct frame_light *lig
                                                   coarse ? "#define EVERY_OTHER_PIXEL\n" : NULL}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Visibility")) != PNB_OK)
         return result;
     const struct gl_texture *output = coarse ? &renderer->coarse_visibility : &renderer->visibility;
     const struct gl_target target = {
@@ -132,7 +132,7 @@ static pnb_result draw_pixels(struct frame *frame, const struct frame_light *lig
         bind_subsampling(frame, program);
     bind_visibility(frame, light, program);
     draw_over(frame, program, tiles, true);
-    timer_end(&renderer->timer, gl_texture_bytes(output));
+    pass_end(frame, gl_texture_bytes(output));
     return gl_check(gl, "visibility");
 }
 
@@ -145,12 +145,12 @@ static pnb_result draw_list(struct frame *frame, const struct frame_light *light
                                                   technique_defines(light), fragment_defines(frame, &light->lists)}};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Visibility")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Visibility")) != PNB_OK)
         return result;
     bind_visibility(frame, light, program);
     gl->BindImageTexture(0, renderer->visibility.id, 0, GL_FALSE, 0, GL_WRITE_ONLY, renderer->visibility.format);
     pixel_list_dispatch(frame);
-    timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
+    pass_end(frame, gl_texture_bytes(&renderer->visibility));
     return gl_check(gl, "visibility of listed pixels");
 }
 

@@ -175,9 +175,7 @@ static pnb_result report(struct frame *frame, uint32_t light) {
     char text[96];
     snprintf(text, sizeof text, "Sample %u/%u, light %u/%u", frame->sample + 1, samples, light + 1, lights);
     job_set_progress(job, (float)(frame->sample * lights + light) / (float)(samples * lights), frame->sample, text);
-    /* Wait for the work queued so far, so that a cancel is noticed soon and progress is true. */
-    frame->gl->Finish();
-    return job_is_cancelled(job) ? error_set(PNB_ERROR_CANCELLED, "the render was cancelled") : PNB_OK;
+    return check_cancel(frame); /* which waits, so that progress is true */
 }
 
 /* first: of the sample. */
@@ -333,7 +331,6 @@ pnb_result renderer_run(struct renderer *renderer, struct pnb_job *job) {
     frame->width = (int)job->settings.crop[2];
     frame->height = (int)job->settings.crop[3];
     glm_vec3_copy((float *)&job->scene->camera.matrix[12], frame->origin);
-    renderer->timer.interactive = job->settings.flags & PNB_SETTINGS_PROGRESSIVE ? job : NULL;
     pnb_result result = draw_frame(frame);
     for (uint32_t i = 0; i < MAX_LIGHTS; i++)
         free_shadow_maps(frame, &frame->lights[i]);

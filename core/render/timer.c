@@ -33,19 +33,7 @@ static pnb_result timer_grow(struct timer *timer) {
     return PNB_OK;
 }
 
-/* What was queued would run before whatever comes next: it is waited for, so that little is queued when a cancel comes.
- */
-static pnb_result check_cancel(const struct timer *timer) {
-    if (!timer->interactive)
-        return PNB_OK;
-    timer->gl->Finish();
-    return job_is_cancelled(timer->interactive) ? error_set(PNB_ERROR_CANCELLED, "the render was cancelled") : PNB_OK;
-}
-
 pnb_result timer_begin(struct timer *timer, const char *name) {
-    const pnb_result check = check_cancel(timer);
-    if (check != PNB_OK)
-        return check;
     if (timer->count == timer->capacity) {
         pnb_result result = timer_grow(timer);
         if (result != PNB_OK)

@@ -19,12 +19,11 @@ struct timer {
     struct timer_span *spans;
     uint32_t count, capacity; /* queries are kept from job to job */
     double started;
-    struct pnb_job *interactive; /* of somebody who waits: a cancel is noticed before every pass. NULL: nobody does */
 };
 
 void timer_init(struct timer *timer, const struct gl *gl);
 void timer_free(struct timer *timer);
-/* CANCELLED: an interactive job was. Spans do not nest. bytes: of the textures and buffers the pass owns. */
+/* Spans do not nest. bytes: of the textures and buffers the pass owns. */
 pnb_result timer_begin(struct timer *timer, const char *name);
 void timer_end(struct timer *timer, uint64_t bytes);
 /* Adds all spans to the job, by name, and forgets them. Waits for OpenGL. */

@@ -128,7 +128,7 @@ static pnb_result draw_exponential(struct frame *frame, const struct frame_light
     static const struct program_desc desc = {.vertex = "pass_screen.vert", .fragment = "pass_exponential.frag"};
     GLuint program;
     pnb_result result = program_use(&renderer->programs, &desc, &program);
-    if (result != PNB_OK || (result = timer_begin(&renderer->timer, "Exponential map")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Exponential map")) != PNB_OK)
         return result;
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
@@ -144,7 +144,7 @@ static pnb_result draw_exponential(struct frame *frame, const struct frame_light
         if (result == PNB_OK)
             draw_screen(renderer);
     }
-    timer_end(&renderer->timer, gl_texture_bytes(exponential));
+    pass_end(frame, gl_texture_bytes(exponential));
     return result == PNB_OK ? gl_check(gl, "exponential map") : result;
 }
 
@@ -161,12 +161,12 @@ static pnb_result esm_prefilter(struct frame *frame, struct frame_light *light) 
         result = draw_exponential(frame, light, exponential);
     if (result == PNB_OK && values[PREFILTER] > 0)
         result = pass_gauss(frame, exponential, 2 * (int)values[PREFILTER] + 1);
-    if (result != PNB_OK || (result = timer_begin(&frame->renderer->timer, "Mip levels")) != PNB_OK)
+    if (result != PNB_OK || (result = pass_begin(frame, "Mip levels")) != PNB_OK)
         return result;
     gl_texture_set_linear(frame->gl, exponential);
     if (levels > 1)
         gl_texture_make_levels(frame->gl, exponential);
-    timer_end(&frame->renderer->timer, gl_texture_bytes(exponential));
+    pass_end(frame, gl_texture_bytes(exponential));
     return gl_check(frame->gl, "exponential map levels");
 }
 

@@ -174,7 +174,7 @@ static pnb_result make_pyramid(struct frame *frame, struct essm *essm, float gre
     static const struct program_desc desc = {.compute = "pass_exponential_pyramid.comp"};
     GLuint program;
     if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK ||
-        (result = timer_begin(&renderer->timer, "Exponential pyramid")) != PNB_OK)
+        (result = pass_begin(frame, "Exponential pyramid")) != PNB_OK)
         return result;
     memset(greatest, 0, MAX_LEVELS * sizeof *greatest);
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, renderer->box_buffer);
@@ -189,7 +189,7 @@ static pnb_result make_pyramid(struct frame *frame, struct essm *essm, float gre
     }
     gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, MAX_LEVELS * sizeof *greatest, greatest);
-    timer_end(&renderer->timer, gl_texture_bytes(&essm->pyramid));
+    pass_end(frame, gl_texture_bytes(&essm->pyramid));
     return gl_check(gl, "exponential pyramid");
 }
 
@@ -217,7 +217,7 @@ static pnb_result make_planes(struct frame *frame, struct essm *essm, int levels
     static const struct program_desc desc = {.compute = "pass_tile_planes.comp"};
     GLuint program;
     if ((result = program_use(&renderer->programs, &desc, &program)) != PNB_OK ||
-        (result = timer_begin(&renderer->timer, "Tile planes")) != PNB_OK)
+        (result = pass_begin(frame, "Tile planes")) != PNB_OK)
         return result;
     for (essm->level = 0; essm->level < levels; essm->level++) {
         const GLuint tiles = (GLuint)(side >> essm->level);
@@ -226,7 +226,7 @@ static pnb_result make_planes(struct frame *frame, struct essm *essm, int levels
         gl->DispatchCompute(tiles, tiles, (GLuint)planes->layers);
     }
     gl->MemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
-    timer_end(&renderer->timer, gl_texture_bytes(planes));
+    pass_end(frame, gl_texture_bytes(planes));
     return gl_check(gl, "tile planes");
 }
 

@@ -87,7 +87,7 @@ static pnb_result add_sample(struct frame *frame, const struct frame_light *ligh
     pnb_result result = program_use(&renderer->programs, &desc, &program);
     if (result != PNB_OK)
         return result;
-    result = timer_begin(&renderer->timer, "Visibility");
+    result = pass_begin(frame, "Visibility");
     const struct gl_target target = {.colors = {&renderer->visibility}, .color_count = 1};
     if (result != PNB_OK || (result = gl_target_bind(gl, renderer->framebuffer, &target)) != PNB_OK)
         return result;
@@ -103,7 +103,7 @@ static pnb_result add_sample(struct frame *frame, const struct frame_light *ligh
     program_set_vec4(gl, program, "emitter_normal", normal);
     program_set_int(gl, program, "uniform_weights", light->parameters[WEIGHTS] > 0.0);
     draw_screen(renderer);
-    timer_end(&renderer->timer, gl_texture_bytes(&renderer->visibility));
+    pass_end(frame, gl_texture_bytes(&renderer->visibility));
     return gl_check(gl, "reference visibility");
 }
 
@@ -142,11 +142,8 @@ static pnb_result reference_draw(struct frame *frame, const struct frame_light *
     const int side = (int)frame->settings->light_samples, count = side * side;
     for (int i = 0; i < count && result == PNB_OK; i++) {
         result = draw_sample(frame, light, i, count, &maps);
-        if (result == PNB_OK && i % 8 == 7) {
-            gl->Finish();
-            if (job_is_cancelled(frame->job))
-                result = error_set(PNB_ERROR_CANCELLED, "the render was cancelled");
-        }
+        if (result == PNB_OK && i % 8 == 7)
+            result = check_cancel(frame);
     }
     gl_texture_free(gl, &maps.opaque);
     fragment_lists_free(gl, &maps.translucent);
