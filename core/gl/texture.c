@@ -63,6 +63,12 @@ pnb_result gl_texture_ensure(const struct gl *gl, struct gl_texture *texture, GL
     return result;
 }
 
+void gl_texture_swap(struct gl_texture *a, struct gl_texture *b) {
+    const struct gl_texture kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
 void gl_texture_set_linear(const struct gl *gl, const struct gl_texture *texture) {
     const GLenum target = texture_target(texture);
     gl->BindTexture(target, texture->id);

@@ -18,6 +18,8 @@ struct gl_texture {
 pnb_result gl_texture_ensure(const struct gl *gl, struct gl_texture *texture, GLenum format, int width, int height,
                              int layers, int levels);
 void gl_texture_free(const struct gl *gl, struct gl_texture *texture);
+/* Exchanges two. */
+void gl_texture_swap(struct gl_texture *a, struct gl_texture *b);
 /* Linear filtering within and, if it has levels, between them. */
 void gl_texture_set_linear(const struct gl *gl, const struct gl_texture *texture);
 /* Fills the levels above 0 with means of 2 x 2 texels. */

@@ -377,8 +377,10 @@ enum pnb_pass {
 
 enum pnb_settings_flags {
     PNB_SETTINGS_FILM_TRANSPARENT = 1, /* the background is 0 with alpha 0 instead of the world colour */
-    PNB_SETTINGS_PROGRESSIVE = 2       /* pnb_job_copy_image can show the samples made so far: after 1, 2, 4, 8 ... of
+    PNB_SETTINGS_PROGRESSIVE = 2,      /* pnb_job_copy_image can show the samples made so far: after 1, 2, 4, 8 ... of
                                         * them. Only while the shadow maps of all lights fit into memory together */
+    PNB_SETTINGS_QUICK = 4             /* with one sample: what the last such job of the context drew is used again as
+                                        * far as it serves. Shadows then depend on it within a texel or two */
 };
 
 /* A parameter by name: "filter_samples" is that of pnb_settings.technique, "ESSM.subdivision" that of the technique

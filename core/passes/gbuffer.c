@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "passes.h"
 
-static void upload_camera(struct renderer *renderer, const struct camera_block *camera) {
-    const struct gl *gl = renderer->gl;
-    gl->BindBuffer(GL_UNIFORM_BUFFER, renderer->camera_buffer);
-    gl->BufferData(GL_UNIFORM_BUFFER, sizeof *camera, camera, GL_STREAM_DRAW);
-    gl->BindBufferBase(GL_UNIFORM_BUFFER, 0, renderer->camera_buffer);
+void camera_block_upload(struct frame *frame) {
+    const struct gl *gl = frame->gl;
+    gl->BindBuffer(GL_UNIFORM_BUFFER, frame->renderer->camera_buffer);
+    gl->BufferData(GL_UNIFORM_BUFFER, sizeof frame->camera, &frame->camera, GL_STREAM_DRAW);
+    gl->BindBufferBase(GL_UNIFORM_BUFFER, 0, frame->renderer->camera_buffer);
 }
 
 static pnb_result ensure_optional(struct renderer *renderer, struct gl_texture *texture, GLenum format, int width,
@@ -53,7 +53,6 @@ pnb_result pass_gbuffer(struct frame *frame, bool whole) {
         ensure_gbuffer(renderer, (int)frame->settings->width, (int)frame->settings->height, emissive, linked);
     if (result != PNB_OK || (result = pass_begin(frame, "G-buffer")) != PNB_OK)
         return result;
-    upload_camera(renderer, &frame->camera);
     const struct gl_target target = {.colors = {&renderer->gbuffer_depth, &renderer->gbuffer_normal,
                                                 &renderer->gbuffer_color, emissive ? &renderer->gbuffer_emission : NULL,
                                                 linked ? &renderer->gbuffer_links : NULL},

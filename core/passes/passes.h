@@ -8,6 +8,7 @@
 #include "../gl/program.h"
 #include "../render/frame.h"
 #include "../render/gpu_scene.h"
+#include "../render/kept.h"
 #include "../render/timer.h"
 #include "../techniques/technique.h"
 
@@ -33,6 +34,7 @@ struct renderer {
     GLuint box_buffer, tile_buffer, tile_visibility_buffer, tile_vertex_array;
     GLuint cursor_buffer; /* one number: the end of the fragments, fragment_lists.c */
     struct program_cache programs;
+    struct kept kept;
 
     /* G-buffer, of the full image's size: see common_camera.glsl for the contents. */
     struct gl_texture gbuffer_depth, gbuffer_normal, gbuffer_color, gbuffer_z;
@@ -59,11 +61,13 @@ pnb_result check_cancel(struct frame *frame);
  * the textures and buffers the pass owns. */
 pnb_result pass_begin(struct frame *frame, const char *name);
 void pass_end(struct frame *frame, uint64_t bytes);
-/* gbuffer.c: scene -> gbuffer_* of the frame's sample; whole: all of the full image, else only the crop. */
+/* gbuffer.c: uploads the frame's camera for the shaders of the passes after it. */
+void camera_block_upload(struct frame *frame);
+/* Scene -> gbuffer_* of the frame's sample; whole: all of the full image, else only the crop. */
 pnb_result pass_gbuffer(struct frame *frame, bool whole);
 /* tiles.c: G-buffer -> box_buffer, tile_buffer: bounds of what each tile of the full image shows, relative world. */
 pnb_result pass_tiles(struct frame *frame);
-/* box_buffer -> frame->receivers and coarse_receivers. */
+/* box_buffer -> frame->receivers. */
 pnb_result read_receivers(struct frame *frame);
 /* Tiles, min_max, planes -> tile_visibility_buffer: 0, 1 or undecided, for a technique with `technique_extent`. */
 pnb_result pass_classify(struct frame *frame, const struct frame_light *light);

@@ -35,18 +35,12 @@ void reuse_light_mean(struct frame *frame) {
     camera->lit[2] = 1.0f;
 }
 
-static void swap_textures(struct gl_texture *a, struct gl_texture *b) {
-    const struct gl_texture kept = *a;
-    *a = *b;
-    *b = kept;
-}
-
 void reuse_keep_key(struct frame *frame) {
     struct renderer *renderer = frame->renderer;
     if (reuse_is_key(frame) || frame->sample % KEY_SAMPLES != 1)
         return;
-    swap_textures(&renderer->gbuffer_depth, &renderer->key_depth);
-    swap_textures(&renderer->gbuffer_normal, &renderer->key_normal);
+    gl_texture_swap(&renderer->gbuffer_depth, &renderer->key_depth);
+    gl_texture_swap(&renderer->gbuffer_normal, &renderer->key_normal);
 }
 
 pnb_result reuse_set_drawn(struct frame *frame, bool drawn) {

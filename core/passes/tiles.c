@@ -25,9 +25,10 @@ static void box_add(struct box *sum, const struct box *box) {
 static pnb_result gather(struct frame *frame, const struct box *tiles, int columns, int rows) {
     const int group_columns = (columns + GROUP - 1) / GROUP, group_rows = (rows + GROUP - 1) / GROUP;
     const size_t group_count = (size_t)group_columns * (size_t)group_rows;
-    frame->receivers = memory_array((size_t)columns * (size_t)rows, sizeof *frame->receivers);
-    frame->coarse_receivers = memory_array(group_count, sizeof *frame->coarse_receivers);
-    if (!frame->receivers || !frame->coarse_receivers)
+    struct receivers *receivers = &frame->receivers;
+    receivers->tiles = memory_array((size_t)columns * (size_t)rows, sizeof *receivers->tiles);
+    receivers->groups = memory_array(group_count, sizeof *receivers->groups);
+    if (!receivers->tiles || !receivers->groups)
         return PNB_ERROR_OUT_OF_MEMORY;
     for (size_t i = 0; i < group_count; i++) {
         struct box group = {{1, 0, 0}, {-1, 0, 0}};
@@ -37,11 +38,11 @@ static pnb_result gather(struct frame *frame, const struct box *tiles, int colum
                 const struct box *tile = &tiles[y * columns + x];
                 if (is_empty(tile))
                     continue;
-                frame->receivers[frame->receiver_count++] = *tile;
+                receivers->tiles[receivers->tile_count++] = *tile;
                 box_add(&group, tile);
             }
         if (!is_empty(&group))
-            frame->coarse_receivers[frame->coarse_receiver_count++] = group;
+            receivers->groups[receivers->group_count++] = group;
     }
     return PNB_OK;
 }

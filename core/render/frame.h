@@ -52,6 +52,7 @@ struct frame_light {
     int map_size;                      /* texels per side */
     struct emitter emitter;
     struct light_views views;
+    vec3 views_origin; /* of relative world space when they were fitted */
     struct gl_texture shadow_map, min_max, planes;  /* a layer per view; kept over the samples of a pixel */
     struct gl_texture prefiltered[MAX_PREFILTERED]; /* the same, of the technique's own making */
     int prefiltered_tile; /* of summed-area tables among them: texels along the side of a tile */
@@ -71,6 +72,19 @@ enum {
     IMAGE_KINDS
 };
 
+/* light_maps.c: the textures and lists of a light; move: those of `to` must be free. */
+void light_maps_free(const struct gl *gl, struct frame_light *light);
+void light_maps_move(struct frame_light *to, struct frame_light *from);
+uint64_t light_maps_bytes(const struct frame_light *light);
+
+/* Boxes of what the camera sees, see tiles.c: by tiles, and fewer for techniques that fit many views. */
+struct receivers {
+    struct box *tiles, *groups;
+    size_t tile_count, group_count;
+};
+
+void receivers_free(struct receivers *receivers);
+
 struct frame {
     const struct gl *gl;
     struct renderer *renderer;
@@ -86,10 +100,8 @@ struct frame {
     vec4 key_window;       /* camera.window of the key sample */
     uint32_t sums_samples; /* in the sums, with the one being drawn */
 
-    struct box *receivers; /* what the camera sees, by tiles; see tiles.c */
-    size_t receiver_count;
-    struct box *coarse_receivers; /* the same in fewer boxes, for techniques that fit many views */
-    size_t coarse_receiver_count;
+    struct receivers receivers;
+    struct content_key surfaces; /* of a QUICK job, see kept.c */
     struct box *casters; /* bounds of the instances that cast shadows */
     size_t caster_count;
     float *images[IMAGE_KINDS][MAX_LIGHTS]; /* pixels of the job's images, NULL: not wanted */

@@ -60,6 +60,15 @@ struct light_views {
 void light_views_fit(struct light_views *views, const struct emitter *emitter, const struct box *receivers,
                      size_t receiver_count, const struct box *casters, size_t caster_count, int map_size);
 
+/* Whether views fitted before, to the same emitter and casters, still show what these must, about as finely. */
+bool light_views_cover(const struct light_views *before, const struct light_views *views, int map_size);
+/* Lets the light space of a SUN, which begins at the origin, begin at another. */
+void light_views_move(struct light_views *views, const vec3 origin, const vec3 other);
+/* Gives the views room for what they will have to show while the camera goes on moving. */
+void light_views_loosen(struct light_views *views);
+/* Gives the views the maps of those. */
+void light_views_take_maps(struct light_views *views, const struct light_views *before);
+
 /* Light space to clip space of a view's map: linear depth goes to gl_FragDepth, clip z only clips at near and far. */
 void light_view_projection(const struct light_view *view, mat4 projection);
 

@@ -233,6 +233,71 @@ void light_views_fit(struct light_views *views, const struct emitter *emitter, c
     }
 }
 
+/* Texels this much wider than they need be still serve. */
+#define WIDEST_TEXEL 1.5f
+/* Of the margins of view_fit, half may be missing, so that rounding decides nothing. */
+#define MARGIN       0.005f
+/* What a loosened view shows around what it must, as shares of its extent. */
+#define ROOM_ASIDE   0.05f
+#define ROOM_BEHIND  0.2f
+
+static bool view_covers(const struct light_view *before, const struct light_view *view, int map_size) {
+    bool covers = before->texel <= WIDEST_TEXEL * view->texel;
+    for (int i = 0; i < 2; i++) {
+        const float extent = 1.0f / view->rect[i + 2], slack = 0.5f * extent * (MARGIN + 1.0f / (float)map_size);
+        covers = covers && before->rect[i] <= view->rect[i] + slack &&
+                 before->rect[i] + 1.0f / before->rect[i + 2] >= view->rect[i] + extent - slack;
+    }
+    const float slack = MARGIN * (view->far_depth - view->near_depth);
+    return covers && before->near_depth <= view->near_depth + slack && before->far_depth >= view->far_depth - slack;
+}
+
+void light_views_move(struct light_views *views, const vec3 origin, const vec3 other) {
+    for (int i = 0; i < views->count; i++) {
+        struct light_view *view = &views->views[i];
+        vec3 step;
+        for (int axis = 0; axis < 3; axis++)
+            step[axis] = (float)((double)origin[axis] - (double)other[axis]);
+        glm_mat4_mulv3(view->from_world, step, 0.0f, step);
+        for (int axis = 0; axis < 3; axis++)
+            view->from_world[3][axis] += step[axis];
+        view->rect[0] += step[0];
+        view->rect[1] += step[1];
+        view->near_depth += step[2];
+        view->far_depth += step[2];
+    }
+}
+
+void light_views_loosen(struct light_views *views) {
+    for (int i = 0; i < views->count; i++) {
+        struct light_view *view = &views->views[i];
+        for (int axis = 0; axis < 2; axis++) {
+            const float extent = 1.0f / view->rect[axis + 2];
+            view->rect[axis] -= ROOM_ASIDE * extent;
+            view->rect[axis + 2] = 1.0f / (extent * (1.0f + 2.0f * ROOM_ASIDE));
+        }
+        view->texel *= 1.0f + 2.0f * ROOM_ASIDE;
+        view->far_depth += ROOM_BEHIND * (view->far_depth - view->near_depth);
+    }
+}
+
+bool light_views_cover(const struct light_views *before, const struct light_views *views, int map_size) {
+    bool covers = before->count == views->count && before->single == views->single;
+    for (int face = 0; face < MAX_LIGHT_VIEWS && covers; face++)
+        covers = before->layer_of_face[face] == views->layer_of_face[face];
+    for (int i = 0; i < views->count && covers; i++)
+        covers = view_covers(&before->views[i], &views->views[i], map_size);
+    return covers;
+}
+
+void light_views_take_maps(struct light_views *views, const struct light_views *before) {
+    for (int i = 0; i < views->count; i++) {
+        struct light_view fitted = before->views[i];
+        glm_mat4_copy(views->views[i].from_world, fitted.from_world);
+        views->views[i] = fitted;
+    }
+}
+
 void light_view_projection(const struct light_view *view, mat4 projection) {
     const float n = view->near_depth, f = view->far_depth;
     glm_mat4_zero(projection);

@@ -23,6 +23,7 @@ pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
                                &renderer->cursor_buffer};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gl->GenBuffers(1, buffers[i]);
+    kept_init(&renderer->kept, gl);
     pnb_result result = gpu_scene_create(gl, &renderer->scene);
     if (result == PNB_OK)
         result = gl_check(gl, "renderer");
@@ -40,6 +41,7 @@ void renderer_destroy(struct renderer **out) {
         return;
     const struct gl *gl = renderer->gl;
     gpu_scene_destroy(&renderer->scene);
+    kept_free(&renderer->kept, gl);
     timer_free(&renderer->timer);
     program_cache_free(&renderer->programs);
     gl->DeleteFramebuffers(1, &renderer->framebuffer);
@@ -88,6 +90,9 @@ void draw_screen(struct renderer *renderer) {
 static pnb_result find_receivers(struct frame *frame) {
     camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, 0);
     reuse_light_mean(frame);
+    camera_block_upload(frame);
+    if (kept_take_gbuffer(frame))
+        return PNB_OK;
     pnb_result result = pass_gbuffer(frame, true);
     if (result == PNB_OK)
         result = pass_tiles(frame);
@@ -108,8 +113,9 @@ static void fit_lights(struct frame *frame) {
     for (uint32_t i = 0; i < frame->scene->light_count; i++) {
         struct frame_light *light = &frame->lights[i];
         emitter_init(&light->emitter, light->source, frame->origin);
-        light_views_fit(&light->views, &light->emitter, frame->receivers, frame->receiver_count, frame->casters,
-                        frame->caster_count, light->map_size);
+        glm_vec3_copy(frame->origin, light->views_origin);
+        light_views_fit(&light->views, &light->emitter, frame->receivers.tiles, frame->receivers.tile_count,
+                        frame->casters, frame->caster_count, light->map_size);
         if (!light->emitter.casts_shadow)
             light->views.count = 0;
     }
@@ -145,6 +151,8 @@ static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *ligh
     frame->light = (uint32_t)(light - frame->lights);
     if (light->views.count == 0 || (light->technique->draw && !wants_diagnosis(frame)))
         return PNB_OK;
+    if (kept_take_maps(frame, light))
+        return PNB_OK;
     pnb_result result =
         pass_shadow_map(frame, &light->views, light->map_size, map_translucency(frame, light), &light->shadow_map);
     if (result == PNB_OK && ((light->technique->needs & NEEDS_MIN_MAX) || wants_blockers(frame)))
@@ -156,15 +164,6 @@ static pnb_result draw_shadow_maps(struct frame *frame, struct frame_light *ligh
     if (result == PNB_OK && light->technique->prefilter)
         result = light->technique->prefilter(frame, light);
     return result;
-}
-
-static void free_shadow_maps(struct frame *frame, struct frame_light *light) {
-    gl_texture_free(frame->gl, &light->shadow_map);
-    gl_texture_free(frame->gl, &light->min_max);
-    gl_texture_free(frame->gl, &light->planes);
-    for (int i = 0; i < MAX_PREFILTERED; i++)
-        gl_texture_free(frame->gl, &light->prefiltered[i]);
-    fragment_lists_free(frame->gl, &light->lists);
 }
 
 /* Progress: light by light of every sample. */
@@ -242,6 +241,7 @@ static pnb_result begin_sample(struct frame *frame, bool drawn_already) {
     reuse_keep_key(frame);
     camera_block_init(&frame->camera, &frame->scene->camera, frame->settings, frame->sample);
     reuse_light_mean(frame);
+    camera_block_upload(frame);
     if (!drawn_already)
         result = pass_gbuffer(frame, false);
     if (result == PNB_OK && !drawn_already && key && some_light(frame, uses_tiles))
@@ -313,7 +313,8 @@ static pnb_result draw_frame(struct frame *frame) {
         if (result == PNB_OK)
             result = draw_samples(frame, first, last);
         for (uint32_t i = first; i < last; i++)
-            free_shadow_maps(frame, &frame->lights[i]);
+            if (result != PNB_OK || !kept_give_maps(frame, &frame->lights[i]))
+                light_maps_free(frame->gl, &frame->lights[i]);
         first = last > first ? last : first + 1;
     }
     return result == PNB_OK ? pass_resolve(frame) : result;
@@ -331,12 +332,13 @@ pnb_result renderer_run(struct renderer *renderer, struct pnb_job *job) {
     frame->width = (int)job->settings.crop[2];
     frame->height = (int)job->settings.crop[3];
     glm_vec3_copy((float *)&job->scene->camera.matrix[12], frame->origin);
+    kept_begin(frame);
     pnb_result result = draw_frame(frame);
     for (uint32_t i = 0; i < MAX_LIGHTS; i++)
-        free_shadow_maps(frame, &frame->lights[i]);
+        light_maps_free(frame->gl, &frame->lights[i]);
+    kept_end(frame, result == PNB_OK);
     pnb_result timing = timer_collect(&renderer->timer, job);
-    memory_free(frame->receivers);
-    memory_free(frame->coarse_receivers);
+    receivers_free(&frame->receivers);
     memory_free(frame->casters);
     memory_free(frame);
     return result != PNB_OK ? result : timing;

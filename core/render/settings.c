@@ -7,6 +7,7 @@
 #include <string.h>
 
 #define DEFAULT_PASSES (PNB_PASS_COMBINED | PNB_PASS_DEPTH | PNB_PASS_NORMAL | PNB_PASS_SHADOW)
+#define KNOWN_FLAGS  (PNB_SETTINGS_FILM_TRANSPARENT | PNB_SETTINGS_PROGRESSIVE | PNB_SETTINGS_QUICK)
 #define KNOWN_PASSES                                                                                                   \
     (DEFAULT_PASSES | PNB_PASS_LIGHT_SHADOWS | PNB_PASS_BLOCKERS | PNB_PASS_PENUMBRAE | PNB_PASS_SHADOW_MAPS)
 
@@ -151,7 +152,7 @@ pnb_result settings_resolve(const pnb_settings *from, uint32_t max_texture_size,
         .light_samples = or_default(from->light_samples, PNB_DEFAULT_LIGHT_SAMPLES),
         .passes = or_default(from->passes, DEFAULT_PASSES),
     };
-    if ((result = check_bits("flags", to->flags, PNB_SETTINGS_FILM_TRANSPARENT | PNB_SETTINGS_PROGRESSIVE)) != PNB_OK ||
+    if ((result = check_bits("flags", to->flags, KNOWN_FLAGS)) != PNB_OK ||
         (result = check_bits("passes", to->passes, KNOWN_PASSES)) != PNB_OK ||
         (result = check_size("width", to->width, 1, max_texture_size)) != PNB_OK ||
         (result = check_size("height", to->height, 1, max_texture_size)) != PNB_OK ||

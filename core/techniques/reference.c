@@ -113,7 +113,7 @@ static pnb_result draw_sample(struct frame *frame, const struct frame_light *lig
     struct light_views views;
     vec4 normal;
     emitter_at(&light->emitter, i, count, frame->sample, &point, normal);
-    light_views_fit(&views, &point, frame->coarse_receivers, frame->coarse_receiver_count, frame->casters,
+    light_views_fit(&views, &point, frame->receivers.groups, frame->receivers.group_count, frame->casters,
                     frame->caster_count, light->map_size);
     shift_texels(&views, i, light->map_size);
     pnb_result result = PNB_OK;
