@@ -34,13 +34,13 @@ def map_size(size, share):
     return min(size, max(_LEAST_MAP, int(size * share)))
 
 
-def for_viewport(scene, width, height, crop, samples, is_reference, image, share):
-    """`image`: the one pass wanted; `share`: of the size of shadow maps."""
+def for_viewport(scene, width, height, crop, samples, is_reference, image, share, is_quick):
+    """`image`: the one pass wanted; `share`: of the size of shadow maps; `is_quick`: with what the last quick one left."""
     settings = _common(scene, 'REFERENCE' if is_reference else None, width, height)
     settings.samples = samples
     settings.shadow_map_size = map_size(settings.shadow_map_size, share)
     settings.passes = image
-    settings.flags |= capi.SETTINGS_PROGRESSIVE
+    settings.flags |= capi.SETTINGS_PROGRESSIVE | (capi.SETTINGS_QUICK if is_quick else 0)
     settings.crop[:] = crop
     return settings
 

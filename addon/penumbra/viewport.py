@@ -17,16 +17,18 @@ from . import capi, command_line, device, draw, export, geometry, jobs, pictures
 _POLL = 0.005
 # Seconds without input before more samples are worth starting.
 _REST = 0.12
-# So many milliseconds first pictures are waited for, by all viewports together, between two turns of Blender's event loop.
-# Without a wait Blender would show the old picture once more, at the cost of the new one where the CPU draws both, and
-# show the new one in a second turn.
-_WAIT_MS = 150
+# So many milliseconds Blender's event loop may stand still while first pictures are waited for, by all viewports together,
+# and shown. Without a wait Blender would show the old picture once more, at the cost of the new one where the CPU draws
+# both, and show the new one in a second turn.
+_BLOCK_MS = 200
+# The least that a picture is waited for.
+_LEAST_WAIT_MS = 100
 # Of the region's width and height, for the first picture.
 _SCALES = (1.0, 0.7, 0.5, 0.35, 0.25)
 # First pictures for which a scale that was too slow is not tried again.
 _MEMORY = 40
-# First pictures after which a wait that was too short is tried again.
-_RETRY = 10
+# First pictures that are not waited for after many waits that were too short; after the first it is one.
+_LONGEST_PAUSE = 16
 # Of the user's latency, what is left for our part however long Blender takes to show a picture.
 _LEAST_SHARE = 0.5
 
@@ -98,7 +100,8 @@ class Viewport:
         elif self._picture:
             self._picture.draw(context.region)
         self._show_status()
-        _turn.drawn = time.monotonic()
+        if self._run is None:       # else both share the processor
+            _turn.drawn = time.monotonic()
 
     def _guard(self, action, *arguments):
         """An exception that leaves a callback is printed at every redraw and seen by nobody."""
@@ -265,11 +268,11 @@ class Run:
         self._seen = 0
         is_single = bool(wanted.image.title)
         samples = 1 if is_single else options.viewport_samples
-        self._options = options.technique, options.use_refine and not is_single, samples
+        self._options = options.technique, options.use_refine, is_single
         width, height = (max(1, int(size * self.scale + 0.5)) for size in wanted.view[:2])
         values = settings.for_viewport(scene, width, height, view.crop(wanted.view, width, height),
                                        1 if kind == _FIRST else samples, kind == _REFERENCE,
-                                       wanted.image.image_pass, self.share)
+                                       wanted.image.image_pass, self.share, kind == _FIRST)
         self.technique = values.technique.decode()
         self.size = width, height
         self.crop = tuple(values.crop)
@@ -297,10 +300,11 @@ class Run:
         return news
 
     def following_kind(self):
-        technique, refine, samples = self._options
-        if self.kind == _FIRST and (samples > 1 or self.share < 1.0):
+        technique, refine, is_single = self._options
+        # A quick picture may be made with what an earlier one left: it is never the last.
+        if self.kind == _FIRST and (self.share < 1.0 or not is_single):
             return _SAMPLES
-        if self.kind != _REFERENCE and refine and technique != 'REFERENCE':
+        if self.kind != _REFERENCE and refine and not is_single and technique != 'REFERENCE':
             return _REFERENCE
         return None
 
@@ -313,7 +317,7 @@ class Speed:
         self._last = None       # scale
         self._count = 0
         self._known = set()     # techniques whose shaders are compiled
-        self._in_vain = {}      # scale: when a wait for a picture was too short
+        self._pauses = {}       # scale: (first pictures not waited for after the last wait, until when), in pictures
 
     def add(self, technique, scale, ms):
         if technique not in self._known:
@@ -337,11 +341,12 @@ class Speed:
         return next((scale for scale in _SCALES if self.expected(scale) <= left), _SCALES[-1])
 
     def is_worth_waiting(self, scale):
-        return self._count - self._in_vain.get(scale, -_RETRY) >= _RETRY
+        return self._count >= self._pauses.get(scale, (0, 0))[1]
 
     def note_wait(self, scale, is_done):
-        if not is_done:
-            self._in_vain[scale] = self._count
+        """One that was too short may have met a moment in which the machine did something else."""
+        pause = 0 if is_done else min(max(1, 2 * self._pauses.get(scale, (0, 0))[0]), _LONGEST_PAUSE)
+        self._pauses[scale] = pause, self._count + 1 + pause
 
 
 class Turn:
@@ -350,11 +355,11 @@ class Turn:
 
     def __init__(self):
         self.waited_ms = 0.0
-        self.drawn = None       # when a viewport ended drawing
+        self.drawn = None       # when a viewport that renders nothing ended drawing
         self._display = collections.deque(maxlen=5)
 
     def left_ms(self):
-        return int(_WAIT_MS - self.waited_ms)
+        return int(max(_BLOCK_MS - self.display_ms(), _LEAST_WAIT_MS) - self.waited_ms)
 
     def display_ms(self):
         return sorted(self._display)[len(self._display) // 2] if self._display else 0.0
