@@ -49,8 +49,8 @@ cmake --build "$build" --target all addon
 mkdir -p "$build/samples"
 blend=$build/samples/$scene.blend
 if [ ! -f "$blend" ] || [ -n "$(find "$root/samples/scenes" -name '*.py' -newer "$blend")" ]; then
-    blender -b --factory-startup --python-exit-code 1 --python "$root/samples/scenes/build.py" -- "$scene" "$blend" >"$blend.log" 2>&1 ||
-        { cat "$blend.log" >&2; exit 1; }
+    blender -b --factory-startup --python-exit-code 1 --python "$root/samples/scenes/build.py" -- \
+        "$scene" "$blend" >"$blend.log" 2>&1 || { cat "$blend.log" >&2; exit 1; }
 fi
 case ${output:=$build/samples/$scene-$technique.png} in /*) ;; *) output=$PWD/$output ;; esac
 rm -f "$output"

@@ -40,7 +40,8 @@ def house():
     place("Plinth", s.box_mesh("plinth", (7, 0.26, 0.22), mat("plinth"), 0.015), transform((0, 0.30, 0)))
     x, z = 1.25, 0.95
     place("Pane", s.box_mesh("pane", (0.8, 0.02, 1.0), mat("glass")), transform((x, 0.195, z)))
-    upright, rail = s.box_mesh("upright", (0.05, 0.07, 1.06), mat("fence")), s.box_mesh("rail", (0.86, 0.064, 0.05), mat("fence"))
+    upright = s.box_mesh("upright", (0.05, 0.07, 1.06), mat("fence"))
+    rail = s.box_mesh("rail", (0.86, 0.064, 0.05), mat("fence"))
     for dx in (-0.4, 0.0, 0.4):
         place("Frame", upright, transform((x + dx, 0.18, z - 0.03)))
     for dz in (-0.03, 0.5, 1.0):
@@ -75,7 +76,8 @@ def trellis(rng, x, width, height):
     for dx in (0, width):
         place("Post", s.box_mesh("post", (0.05, 0.05, height + 0.2), mat("trellis"), 0.004), transform((x + dx, y, 0)))
     for dz in (0.1, height + 0.1):
-        place("Rail", s.box_mesh("rail", (width, 0.04, 0.04), mat("trellis"), 0.004), transform((x + width / 2, y, dz - 0.02)))
+        rail = s.box_mesh("rail", (width, 0.04, 0.04), mat("trellis"), 0.004)
+        place("Rail", rail, transform((x + width / 2, y, dz - 0.02)))
     leaf = s.leaf_mesh("vine leaf", 0.11, 0.085, mat("vine"), 0.3, 0.35, 5)
     for k in range(7):
         dx, points = width * (k + 0.5) / 7, []
@@ -98,7 +100,8 @@ def fence(y):
     picket = s.finish(bm, "picket", mat("fence"))
     rail = s.box_mesh("fence rail", (4.6, 0.03, 0.06), mat("fence"))
     post = s.box_mesh("fence post", (0.09, 0.09, 0.86), mat("fence"), 0.008)
-    cap = s.lathe_mesh("cap", [(0, 0), (0.05, 0), (0.05, 0.012), (0.03, 0.02), (0.04, 0.05), (0.025, 0.085), (0, 0.09)], mat("fence"), 20)
+    profile = [(0, 0), (0.05, 0), (0.05, 0.012), (0.03, 0.02), (0.04, 0.05), (0.025, 0.085), (0, 0.09)]
+    cap = s.lathe_mesh("cap", profile, mat("fence"), 20)
     for start in (-4.75, 0.85):
         for k in range(36):
             place("Picket", picket, transform((start + 0.08 + 0.125 * k, y - 0.03, 0.04)))
@@ -110,23 +113,28 @@ def fence(y):
 
 
 def pots(rng):
-    outline = s.spline([(0.10, 0, 0), (0.15, 0, 0.22), (0.165, 0, 0.225), (0.165, 0, 0.27), (0.145, 0, 0.27), (0.135, 0, 0.2)], 4)
+    outline = s.spline([(0.10, 0, 0), (0.15, 0, 0.22), (0.165, 0, 0.225), (0.165, 0, 0.27), (0.145, 0, 0.27),
+                        (0.135, 0, 0.2)], 4)
     pot = s.lathe_mesh("pot", [(0, 0)] + [(p.x, p.z) for p in outline] + [(0, 0.2)], mat("pot"), 48)
     leaf = s.leaf_mesh("bush leaf", 0.13, 0.035, mat("bush"), 0.4, 0.3)
     round_leaf = s.leaf_mesh("round leaf", 0.10, 0.075, mat("vine"), 0.2, 0.3)
     petal = s.leaf_mesh("petal", 0.035, 0.028, mat("flower"), 0.3, -0.2, 4)
-    for x, y, size, kind in ((0.46, -0.18, 1.0, leaf), (2.15, -0.15, 1.25, round_leaf), (-1.98, -0.3, 1.1, leaf), (0.86, -0.33, 0.7, round_leaf)):
+    for x, y, size, kind in ((0.46, -0.18, 1.0, leaf), (2.15, -0.15, 1.25, round_leaf), (-1.98, -0.3, 1.1, leaf),
+                             (0.86, -0.33, 0.7, round_leaf)):
         place("Pot", pot, transform((x, y, 0.03), (0, 0, 0), size))
         plants.bush("Bush", rng, (x, y, 0.03 + 0.2 * size), kind, mat("stem"), 0.24 * size, 0.5 * size, 14, size,
                     petal if kind is leaf else None)
 
 
 def watering_can(x, y):
-    body = s.lathe_mesh("can", [(0, 0), (0.105, 0), (0.11, 0.01), (0.10, 0.2), (0.09, 0.22), (0.085, 0.22), (0.095, 0.19), (0, 0.15)], mat("can"), 40)
+    profile = [(0, 0), (0.105, 0), (0.11, 0.01), (0.10, 0.2), (0.09, 0.22), (0.085, 0.22), (0.095, 0.19), (0, 0.15)]
+    body = s.lathe_mesh("can", profile, mat("can"), 40)
     frame = transform((x, y, 0.03), (0, 0, -155))
-    spout = s.tube_mesh("spout", s.spline([(0.09, 0, 0.05), (0.17, 0, 0.12), (0.24, 0, 0.27)], 5), 0.024, mat("can"), 14, 0.011)
+    path = s.spline([(0.09, 0, 0.05), (0.17, 0, 0.12), (0.24, 0, 0.27)], 5)
+    spout = s.tube_mesh("spout", path, 0.024, mat("can"), 14, 0.011)
     rose = s.lathe_mesh("rose", [(0.011, 0), (0.04, 0.05), (0.04, 0.055), (0, 0.06)], mat("can"), 24)
-    grip = s.tube_mesh("grip", s.spline([(0.08, 0, 0.21), (0.02, 0, 0.33), (-0.12, 0, 0.30), (-0.17, 0, 0.17), (-0.105, 0, 0.06)], 6), 0.008, mat("can"), 10)
+    path = s.spline([(0.08, 0, 0.21), (0.02, 0, 0.33), (-0.12, 0, 0.30), (-0.17, 0, 0.17), (-0.105, 0, 0.06)], 6)
+    grip = s.tube_mesh("grip", path, 0.008, mat("can"), 10)
     for name, mesh in (("Can", body), ("Spout", spout), ("Grip", grip)):
         place(name, mesh, frame)
     place("Rose", rose, frame @ transform((0.235, 0, 0.26), (0, 30, 0)))

@@ -22,7 +22,8 @@ def vine(name, rng, path, leaf, stem_material, radius=0.006, spacing=0.05, scale
         while travelled > spacing:
             travelled -= spacing
             offset = s.Vector([rng.gauss(0, 0.012) for _ in range(3)])
-            stand_leaf(leaf, b + offset, base + rng.uniform(-75, 75), rng.uniform(-35, 45), scale * rng.uniform(0.6, 1.2))
+            heading, pitch = base + rng.uniform(-75, 75), rng.uniform(-35, 45)
+            stand_leaf(leaf, b + offset, heading, pitch, scale * rng.uniform(0.6, 1.2))
 
 
 def bush(name, rng, at, leaf, stem_material, radius, height, count, scale=1.0, petal=None):
@@ -30,7 +31,8 @@ def bush(name, rng, at, leaf, stem_material, radius, height, count, scale=1.0, p
     for k in range(count):
         turn, lean = 2 * math.pi * (k + rng.random()) / count, radius * math.sqrt(rng.random())
         top = s.Vector((lean * math.cos(turn), lean * math.sin(turn), height * rng.uniform(0.7, 1.1)))
-        points = s.spline([s.Vector(at), s.Vector(at) + s.Vector((top.x * 0.25, top.y * 0.25, top.z * 0.55)), s.Vector(at) + top], 7)
+        bend = s.Vector((top.x * 0.25, top.y * 0.25, top.z * 0.55))
+        points = s.spline([s.Vector(at), s.Vector(at) + bend, s.Vector(at) + top], 7)
         place(name, s.tube_mesh(name, points, 0.005, stem_material, 5, 0.0015))
         for i in range(3, len(points)):
             for _ in range(2):

@@ -64,9 +64,11 @@ def fruit_bowl(x, y):
                         (0.170, 0, 0.118), (0.145, 0, 0.088), (0.09, 0, 0.052), (0.04, 0, 0.04)], 5)
     profile = [(0, 0)] + [(p.x, p.z) for p in outline] + [(0, 0.04)]
     place("Bowl", s.lathe_mesh("bowl", profile, mat("bowl"), 72), transform((x, y, 0.012)))
-    apple, lemon, orange = (fruit_mesh("apple", "apple", 0.043, 0.038, 0.28), fruit_mesh("lemon", "lemon", 0.031, 0.042, -0.12),
-                            fruit_mesh("orange", "orange", 0.042, 0.040, 0.05))
-    stem = s.tube_mesh("stem", s.spline([(0, 0, 0.06), (0.003, 0, 0.075), (0.012, 0.002, 0.092)], 3), 0.002, mat("stem"), 6)
+    apple = fruit_mesh("apple", "apple", 0.043, 0.038, 0.28)
+    lemon = fruit_mesh("lemon", "lemon", 0.031, 0.042, -0.12)
+    orange = fruit_mesh("orange", "orange", 0.042, 0.040, 0.05)
+    path = s.spline([(0, 0, 0.06), (0.003, 0, 0.075), (0.012, 0.002, 0.092)], 3)
+    stem = s.tube_mesh("stem", path, 0.002, mat("stem"), 6)
     heap = [(apple, -0.075, -0.03, 0.062, 8), (orange, 0.02, -0.075, 0.062, 0), (apple, 0.078, 0.01, 0.064, -14),
             (orange, -0.02, 0.07, 0.062, 0), (lemon, 0.0, -0.005, 0.10, 75), (apple, -0.035, -0.02, 0.125, 20)]
     for i, (mesh, dx, dy, z, tilt) in enumerate(heap):
@@ -87,7 +89,8 @@ def bottle(x, y):
     outline = s.spline([(0.036, 0, 0.0), (0.039, 0, 0.01), (0.039, 0, 0.17), (0.036, 0, 0.20), (0.018, 0, 0.235),
                         (0.0145, 0, 0.26), (0.014, 0, 0.31)], 5)
     lip = [(0.017, 0.31), (0.0175, 0.325), (0.012, 0.327), (0, 0.327)]
-    place("Bottle", s.lathe_mesh("bottle", [(0, 0)] + [(p.x, p.z) for p in outline] + lip, mat("bottle"), 56), transform((x, y, 0)))
+    profile = [(0, 0)] + [(p.x, p.z) for p in outline] + lip
+    place("Bottle", s.lathe_mesh("bottle", profile, mat("bottle"), 56), transform((x, y, 0)))
     label = [(0.0395, 0.06), (0.0398, 0.06), (0.0398, 0.15), (0.0395, 0.15)]
     place("Label", s.lathe_mesh("label", label, mat("label"), 56), transform((x, y, 0)))
 
@@ -119,12 +122,13 @@ def books(x, y):
 
 
 def candlestick(x, y, z):
-    profile = [(0, 0), (0.045, 0), (0.045, 0.006), (0.012, 0.014), (0.008, 0.03), (0.014, 0.045), (0.008, 0.06), (0.018, 0.075),
-               (0.018, 0.08), (0, 0.08)]
+    profile = [(0, 0), (0.045, 0), (0.045, 0.006), (0.012, 0.014), (0.008, 0.03), (0.014, 0.045), (0.008, 0.06),
+               (0.018, 0.075), (0.018, 0.08), (0, 0.08)]
     place("Candlestick", s.lathe_mesh("candlestick", profile, mat("brass"), 48), transform((x, y, z)))
     wax = [(0, 0.08), (0.010, 0.08), (0.010, 0.20), (0.007, 0.205), (0, 0.203)]
     place("Candle", s.lathe_mesh("candle", wax, mat("candle"), 32), transform((x, y, z)))
-    place("Wick", s.tube_mesh("wick", [(0, 0, 0.2), (0, 0, 0.212), (0.003, 0, 0.22)], 0.0009, mat("thread"), 6), transform((x, y, z)))
+    wick = s.tube_mesh("wick", [(0, 0, 0.2), (0, 0, 0.212), (0.003, 0, 0.22)], 0.0009, mat("thread"), 6)
+    place("Wick", wick, transform((x, y, z)))
 
 
 def branch(rng, leaf, start, heading, length, radius, depth, name):
@@ -147,9 +151,10 @@ def branch(rng, leaf, start, heading, length, radius, depth, name):
 
 
 def vase_with_twigs(x, y):
-    outline = s.spline([(0.04, 0, 0.0), (0.062, 0, 0.05), (0.066, 0, 0.10), (0.040, 0, 0.155), (0.026, 0, 0.185), (0.034, 0, 0.205),
-                        (0.030, 0, 0.204), (0.022, 0, 0.185)], 5)
-    place("Vase", s.lathe_mesh("vase", [(0, 0)] + [(p.x, p.z) for p in outline] + [(0, 0.16)], mat("vase"), 56), transform((x, y, 0)))
+    outline = s.spline([(0.04, 0, 0.0), (0.062, 0, 0.05), (0.066, 0, 0.10), (0.040, 0, 0.155), (0.026, 0, 0.185),
+                        (0.034, 0, 0.205), (0.030, 0, 0.204), (0.022, 0, 0.185)], 5)
+    profile = [(0, 0)] + [(p.x, p.z) for p in outline] + [(0, 0.16)]
+    place("Vase", s.lathe_mesh("vase", profile, mat("vase"), 56), transform((x, y, 0)))
     rng = random.Random(7)
     leaf = s.leaf_mesh("leaf", 0.055, 0.022, mat("leaf"))
     for i, lean in enumerate(((-0.35, -0.1), (0.30, 0.05), (0.02, -0.32), (0.5, -0.3))):
@@ -161,7 +166,8 @@ def mobile(x, y, z):
     rod = s.tube_mesh("rod", [(-0.5, 0, 0), (0, 0, 0.03), (0.5, 0, 0)], 0.005, mat("thread"), 8)
     disc = s.lathe_mesh("disc", [(0, -0.0015), (0.034, -0.0015), (0.034, 0.0015), (0, 0.0015)], mat("brass"), 40)
     wing = s.leaf_mesh("wing", 0.12, 0.05, mat("goblet"), 0.5, 0.1, 8)
-    bars = [((x, y, z), 0.46, 25), ((x - 0.208, y - 0.097, z - 0.09), 0.26, -40), ((x + 0.208, y + 0.097, z - 0.07), 0.22, 70)]
+    bars = [((x, y, z), 0.46, 25), ((x - 0.208, y - 0.097, z - 0.09), 0.26, -40),
+            ((x + 0.208, y + 0.097, z - 0.07), 0.22, 70)]
     for i, (centre, width, turn) in enumerate(bars):
         place(f"Rod {i}", rod, transform(centre, (0, 0, turn), (width, width * 0.7, width * 0.7)))
         for side in (-1, 1):
@@ -177,7 +183,8 @@ def mobile(x, y, z):
                     place("Wing", wing, transform(tip - s.Vector((0, 0, 0.07)), (0, -25, turn + 90 * flip), (1, 1, 1)))
     for i, (centre, _, _) in enumerate(bars):
         top = s.Vector(centre) + s.Vector((0, 0, 0.09 if i else 0.8))
-        place("Thread", s.tube_mesh("thread", [s.Vector(centre) + s.Vector((0, 0, 0.009)), top], 0.0012, mat("thread"), 5))
+        ends = [s.Vector(centre) + s.Vector((0, 0, 0.009)), top]
+        place("Thread", s.tube_mesh("thread", ends, 0.0012, mat("thread"), 5))
 
 
 def build():
@@ -188,6 +195,7 @@ def build():
     candlestick(0.36, 0.07, books(0.34, 0.05))
     vase_with_twigs(0.10, 0.27)
     mobile(-0.30, -0.12, 0.66)
-    s.area_light("Window", s.aim((-1.90, -0.92, 1.18), (0.15, 0.1, 0.15)), 80, (0.64, 0.42), "RECTANGLE", (1.0, 0.93, 0.82))
+    through_window = s.aim((-1.90, -0.92, 1.18), (0.15, 0.1, 0.15))
+    s.area_light("Window", through_window, 80, (0.64, 0.42), "RECTANGLE", (1.0, 0.93, 0.82))
     s.world((0.055, 0.065, 0.085))
     s.camera((0.14, -1.72, 0.86), (0.06, 0.0, 0.235), 42)
