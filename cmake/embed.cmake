@@ -11,4 +11,6 @@ foreach(file IN LISTS FILES)
   string(APPEND rows "    {\"${name}\", file_${index}},\n")
   math(EXPR index "${index} + 1")
 endforeach()
-file(WRITE ${OUTPUT} "#include \"gl/shader_source.h\"\n\n${arrays}\nconst struct shader_source shader_sources[] = {\n${rows}    {0, 0},\n};\n")
+string(APPEND rows "    {0, 0},\n")
+file(WRITE ${OUTPUT}
+    "#include \"gl/shader_source.h\"\n\n${arrays}\nconst struct shader_source shader_sources[] = {\n${rows}};\n")

@@ -35,7 +35,8 @@ int gl_format_bytes(GLenum format);
 #define MAX_ATTACHMENTS 6
 
 /* Draws into these textures (layer of an array, or -1 for a plain texture) with a viewport of their size.
- * depth and any color but the first may be NULL. The framebuffer object `fbo` is reused for every pass. INTERNAL if it is incomplete. */
+ * depth and any color but the first may be NULL. The framebuffer object `fbo` is reused for every pass. INTERNAL if it
+ * is incomplete. */
 struct gl_target {
     const struct gl_texture *colors[MAX_ATTACHMENTS];
     int color_count;

@@ -164,7 +164,7 @@ typedef struct pnb_mesh_desc {
  * creating one again for an unchanged object uploads nothing. The caller owns *mesh; jobs keep what they use. */
 PNB_API pnb_result pnb_mesh_create(const pnb_mesh_desc *desc, pnb_mesh **mesh);
 PNB_API void pnb_mesh_destroy(pnb_mesh **mesh);
-/* Curves as thin tubes, such as hair, smooth through their points (Catmull-Rom): a mesh of prisms of five sides, of three
+/* Curves as thin tubes, such as hair, smooth through their points (Catmull-Rom): a mesh of prisms of five sides, three
  * where there are many points, as wide on average as a round tube, with its normals. Curve i has the points
  * first_points[i] .. first_points[i + 1] - 1. Its uv is that of the curve everywhere. */
 typedef struct pnb_strands_desc {
@@ -238,13 +238,13 @@ typedef struct pnb_material {
     uint32_t flags;                        /* enum pnb_material_flags */
     const pnb_texture *base_color_texture; /* NULL: none */
     const pnb_texture *alpha_texture;      /* its alpha channel (or grey, without one) is used; NULL: none */
-    float emission[3];                     /* radiance, W/(m2 sr), linear, >= 0, multiplied with the texture: seen by the
-                                            * camera, but lights nothing */
+    float emission[3];                     /* radiance, W/(m2 sr), linear, >= 0, multiplied with the texture: seen by
+                                            * the camera, but lights nothing */
     float absorption[3];                   /* 0..1, the share of each channel that is lost of the light that shines
                                             * through; 0: clear. What passes is transparency * (1 - absorption) */
     const pnb_texture *emission_texture;   /* NULL: none */
     float uv_matrix[6]; /* texture coordinates are these two rows times (u, v, 1); all zero: (u, v) */
-    float shadow_threshold; /* 0..1. Above 0: the shadow is opaque where alpha is at least this, elsewhere there is none */
+    float shadow_threshold; /* 0..1. Above 0: the shadow is opaque where alpha is at least this, elsewhere none */
 } pnb_material;
 
 enum pnb_instance_flags {
@@ -269,7 +269,12 @@ typedef struct pnb_instance {
     uint64_t unshadowed_by;  /* shadow linking. Bit i: it casts no shadow in the light of scene.lights[i] */
 } pnb_instance;
 
-typedef enum pnb_light_type { PNB_LIGHT_AREA = 0, PNB_LIGHT_POINT = 1, PNB_LIGHT_SPOT = 2, PNB_LIGHT_SUN = 3 } pnb_light_type;
+typedef enum pnb_light_type {
+    PNB_LIGHT_AREA = 0,
+    PNB_LIGHT_POINT = 1,
+    PNB_LIGHT_SPOT = 2,
+    PNB_LIGHT_SUN = 3
+} pnb_light_type;
 typedef enum pnb_area_shape { PNB_AREA_RECTANGLE = 0, PNB_AREA_ELLIPSE = 1 } pnb_area_shape;
 
 enum pnb_light_flags {
@@ -371,8 +376,8 @@ enum pnb_pass {
     PNB_PASS_BLOCKERS = 32,     /* "Blocker.<light name>", metres from the light to the average blocker; of a SUN, from
                                  * the near end of its shadow map */
     PNB_PASS_PENUMBRAE = 64,    /* "Penumbra.<light name>", metres across the light's direction at the receiver */
-    PNB_PASS_SHADOW_MAPS = 128  /* "Map.<light name>", the map itself, its layers side by side in the full image: 0 at its
-                                 * near end, 1 at its far end or where there is nothing, -1 beside it */
+    PNB_PASS_SHADOW_MAPS = 128  /* "Map.<light name>", the map itself, its layers side by side in the full image: 0 at
+                                 * its near end, 1 at its far end or where there is nothing, -1 beside it */
 };
 
 enum pnb_settings_flags {
@@ -440,7 +445,8 @@ typedef struct pnb_timing {
 /* Checks the description, copies what it needs and queues the render. Jobs of one context run in order. The scene
  * may be changed or freed at once. The caller owns *job.
  * Errors: INVALID_ARGUMENT, UNSUPPORTED (size beyond the limits), OUT_OF_MEMORY, FORKED, CONTEXT_LOST. */
-PNB_API pnb_result pnb_render_start(pnb_context *context, const pnb_scene *scene, const pnb_settings *settings, pnb_job **job);
+PNB_API pnb_result pnb_render_start(pnb_context *context, const pnb_scene *scene, const pnb_settings *settings,
+                                    pnb_job **job);
 /* Waits up to timeout_ms (UINT32_MAX: for ever, 0: polls) and reports progress (may be NULL; struct_size set).
  * Returns PNB_OK when the images are ready, PNB_TIMEOUT, or the error that ended the job. */
 PNB_API pnb_result pnb_job_wait(pnb_job *job, uint32_t timeout_ms, pnb_progress *progress);
@@ -449,7 +455,8 @@ PNB_API void pnb_job_cancel(pnb_job *job);
 /* Cancels, waits and frees. */
 PNB_API void pnb_job_destroy(pnb_job **job);
 /* pnb_render_start and pnb_job_wait in one; on error *job is not written. */
-PNB_API pnb_result pnb_render(pnb_context *context, const pnb_scene *scene, const pnb_settings *settings, pnb_job **job);
+PNB_API pnb_result pnb_render(pnb_context *context, const pnb_scene *scene, const pnb_settings *settings,
+                              pnb_job **job);
 
 /* Results of a finished job. Images are in the order of enum pnb_pass. Index beyond the count: INVALID_ARGUMENT. */
 PNB_API uint32_t pnb_job_image_count(const pnb_job *job);

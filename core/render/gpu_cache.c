@@ -151,7 +151,9 @@ static pnb_result mesh_create(struct gpu_cache *cache, const pnb_mesh *from, str
         return PNB_OK;
     }
     mesh_release(cache, &mesh->entry);
-    return result == PNB_ERROR_OUT_OF_MEMORY ? error_set(result, "out of OpenGL memory for mesh '%s'", from->name) : result;
+    if (result == PNB_ERROR_OUT_OF_MEMORY)
+        return error_set(result, "out of OpenGL memory for mesh '%s'", from->name);
+    return result;
 }
 
 pnb_result gpu_cache_mesh(struct gpu_cache *cache, const pnb_mesh *mesh, const struct gpu_mesh **out) {
@@ -197,8 +199,9 @@ static pnb_result image_create(struct gpu_cache *cache, const pnb_texture *from,
     gl->GenTextures(1, &image->texture);
     gl->ActiveTexture(GL_TEXTURE0);
     gl->BindTexture(GL_TEXTURE_2D, image->texture);
-    gl->TexStorage2D(GL_TEXTURE_2D, levels, GL_RGBA16F, (GLsizei)from->width, (GLsizei)from->height);
-    gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)from->width, (GLsizei)from->height, GL_RGBA, GL_FLOAT, from->rgba);
+    const GLsizei width = (GLsizei)from->width, height = (GLsizei)from->height;
+    gl->TexStorage2D(GL_TEXTURE_2D, levels, GL_RGBA16F, width, height);
+    gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, from->rgba);
     gl->GenerateMipmap(GL_TEXTURE_2D);
     const bool nearest = from->flags & PNB_TEXTURE_NEAREST;
     const GLint wrap = from->flags & PNB_TEXTURE_CLIP     ? GL_CLAMP_TO_BORDER

@@ -14,7 +14,7 @@ void gpu_scene_destroy(struct gpu_scene **scene);
 /* Uploads what is new in the frame's scene, fills frame->casters, and frees what no frame used for a while. */
 pnb_result gpu_scene_update(struct gpu_scene *scene, struct frame *frame);
 
-/* Finds, once a frame, the instances whose mesh is closed and stops light everywhere. `from`: the scene of the update. */
+/* Finds, once a frame, the instances whose mesh is closed and stops light everywhere. `from`: the update's scene. */
 void gpu_scene_find_solids(struct gpu_scene *scene, const struct scene *from);
 
 /* Bytes of OpenGL memory it holds. */

@@ -17,7 +17,8 @@
 /* Rotations from the emitter's frame: right, up and forward of the faces +Z +X -X +Y -Y -Z. */
 static const struct {
     int axis[3], sign;
-} faces[MAX_LIGHT_VIEWS] = {{{0, 1, 2}, 1}, {{1, 2, 0}, 1}, {{2, 1, 0}, -1}, {{2, 0, 1}, 1}, {{0, 2, 1}, -1}, {{1, 0, 2}, -1}};
+} faces[MAX_LIGHT_VIEWS] = {{{0, 1, 2}, 1}, {{1, 2, 0}, 1},  {{2, 1, 0}, -1},
+                            {{2, 0, 1}, 1}, {{0, 2, 1}, -1}, {{1, 0, 2}, -1}};
 
 struct range {
     vec2 minimum, maximum; /* of q; empty when minimum > maximum */

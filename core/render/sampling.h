@@ -23,8 +23,8 @@ enum pattern { PATTERN_VOGEL, PATTERN_GRID };
 int pattern_fill(enum pattern pattern, int count, bool disk, uint32_t turn, float points[][2]);
 
 /* Point i of `count` points of a light, any number, for the truth: Vogel's spiral, also on the square. What lies on one
- * side of a line is off its share by 0.28 / count^(3/4), root mean square over lines of one direction, and by 0.4 in the
- * worst direction; a lattice is better along the axes but has directions in which it is no better than a grid. turn: see
+ * side of a line is off its share by 0.28 / count^(3/4), root mean square over lines of one direction, 0.4 in the worst
+ * direction; a lattice is better along the axes but has directions in which it is no better than a grid. turn: see
  * pattern_fill. */
 void light_point(int i, int count, bool disk, uint32_t turn, float point[2]);
 

@@ -12,8 +12,8 @@ static const char *const averages[] = {"AREA", "EQUAL", NULL};
 static const struct parameter parameters[] = {
     [PATTERN] = {.name = "pattern",
                  .label = "Pattern",
-                 .description = "VOGEL: evenly spread points whose projections never coincide, free of bands. GRID: the "
-                                "regular grid of the papers, the largest square number of points within the count",
+                 .description = "VOGEL: evenly spread points whose projections never coincide, free of bands. GRID: "
+                                "the regular grid of the papers, the largest square number of points within the count",
                  .unit = "",
                  .type = PNB_ENUM,
                  .maximum = 1,
@@ -29,8 +29,8 @@ static const struct parameter parameters[] = {
                          .default_value = 32},
     [FILTER_SAMPLES] = {.name = "filter_samples",
                         .label = "Filter Samples",
-                        .description = "Points of the penumbra filter; each is one shade of grey (papers: 15 x 15 = 225). "
-                                       "Every four anti-aliasing samples share them, down to 16 each",
+                         .description = "Points of the penumbra filter; each is one shade of grey (papers: "
+                                        "15 x 15 = 225). Every four anti-aliasing samples share them, down to 16 each",
                         .unit = "",
                         .type = PNB_INT,
                         .minimum = 1,
@@ -38,8 +38,9 @@ static const struct parameter parameters[] = {
                         .default_value = 64},
     [BLOCKER_AVERAGE] = {.name = "blocker_average",
                          .label = "Blocker Average",
-                         .description = "AREA: a blocker counts by the share of the light it hides. EQUAL: all count the "
-                                        "same, as in the paper; thin casters near the light then widen every penumbra",
+                          .description = "AREA: a blocker counts by the share of the light it hides. EQUAL: all count "
+                                         "the same, as in the paper; thin casters near the light then widen every "
+                                         "penumbra",
                          .unit = "",
                          .type = PNB_ENUM,
                          .maximum = 1,
@@ -54,8 +55,8 @@ static const struct parameter parameters[] = {
                           .default_value = 2},
     [MIN_MAX] = {.name = SKIP_PARAMETER,
                  .label = "Min-Max Skip",
-                 .description = "Skips pixels that the min-max pyramid shows to be fully lit or fully shadowed; faster, "
-                                "same image",
+                 .description = "Skips pixels that the min-max pyramid shows to be fully lit or fully shadowed; "
+                                "faster, same image",
                  .unit = "",
                  .type = PNB_BOOL,
                  .maximum = 1,

@@ -22,7 +22,7 @@ static const struct parameter parameters[] = {
                  .items = weightings},
     {0}};
 
-/* A point-like emitter at point i of `count` points of `emitter`, and the direction its surface faces there (w = 0: all). */
+/* A point-like emitter at point i of `count` points of `emitter`, and the way its surface faces there (w = 0: all). */
 static void emitter_at(const struct emitter *emitter, int i, int count, uint32_t turn, struct emitter *point,
                        vec4 normal) {
     float s[2];

@@ -21,8 +21,8 @@ enum technique_needs {
 };
 
 /* Parameter of a technique whose shader has `vec2 technique_extent(receiver r)`, the rectangle that holds its taps
- * (negative: decide nothing), and that yields 1 or 0 where nothing or everything in it blocks. If it is on, tiles of the
- * image that are decided by the min-max pyramid are not drawn by the technique. */
+ * (negative: decide nothing), and that yields 1 or 0 where nothing or everything in it blocks. If it is on, tiles of
+ * the image that are decided by the min-max pyramid are not drawn by the technique. */
 #define SKIP_PARAMETER "min_max"
 
 /* Parameter of a technique that, if it is on, is drawn at every other pixel of both axes and interpolated in between
