@@ -48,8 +48,8 @@ vec3 camera_position(vec2 coordinate, float depth) {
     return camera_position_in(camera.window, coordinate, depth);
 }
 
-// Where a key sample lights a surface: it stands for others, so at the mean of their places in the pixel, on the surface's
-// own tangent plane.
+// Where a key sample lights a surface: it stands for others, so at the mean of their places in the pixel, on the
+// surface's own tangent plane.
 vec3 camera_mean_position(vec3 position, vec3 normal) {
     float scale = camera.perspective != 0.0 ? abs(dot(position, camera.axis_z.xyz)) : 1.0;
     vec3 across = scale * (camera.lit.x * camera.axis_x.xyz + camera.lit.y * camera.axis_y.xyz);

@@ -12,8 +12,8 @@ float exponential_start(int layer) {
     return min(texelFetch(min_max, ivec3(0, 0, layer), textureQueryLevels(min_max) - 1).r, 1.0 - 1e-6);
 }
 
-// Depth of a texel. NaN, which would spread over all sums and means, counts as nothing there. By its bits, since compilers
-// may take comparisons for minima.
+// Depth of a texel. NaN, which would spread over all sums and means, counts as nothing there. By its bits, since
+// compilers may take comparisons for minima.
 float clean_depth(float depth) {
     return floatBitsToUint(depth) < floatBitsToUint(1.0) ? depth : 1.0;
 }

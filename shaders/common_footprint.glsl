@@ -18,7 +18,7 @@ const vec2 footprint_pixel = vec2(0.5);
 vec2 footprint_point(receiver r, vec2 coordinate) {
     mat4 to_light = LIGHT_VIEW(r.layer).from_world;
     vec3 a = (to_light * vec4(camera_position(coordinate, 0.0), 1.0)).xyz;
-    // Of the ray per metre along the camera's axis; as a difference of points it would lose its digits far from the light.
+    // Of the ray per metre along the camera's axis: a difference of points would lose its digits far from the light.
     vec3 direction = mat3(to_light) *
                      (camera.perspective != 0.0 ? camera_position(coordinate, 1.0) : -camera.axis_z.xyz);
     // Seen edge-on the ray leaves the plane; the footprint is then as long as it can get.

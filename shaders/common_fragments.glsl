@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragment lists (core/passes/fragment_lists.c): for every texel of a light's views, what casts shadows there, in order of
-// its light-space depth, with its opacity: 1 - transmittance, a number or, with COLORED, one for each channel.
+// Fragment lists (core/passes/fragment_lists.c): for every texel of a light's views, what casts shadows there, in order
+// of its light-space depth, with its opacity: 1 - transmittance, a number or, with COLORED, one for each channel.
 
 #ifdef COLORED
 #define OPACITY vec3

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The emitter as a receiver weighs it, which is how REFERENCE does: each point s by the light that it brings to the shading
-// normal. Points behind the surface itself are hidden, and the rest is a smaller emitter elsewhere.
+// The emitter as a receiver weighs it, which is how REFERENCE does: each point s by the light that it brings to the
+// shading normal. Points behind the surface itself are hidden, and the rest is a smaller emitter elsewhere.
 
 struct seen_emitter {
     float share; // of the weight, before the surface itself

@@ -13,10 +13,10 @@ struct light_view {
 layout(std140, binding = 1) uniform light_block {
     light_view views[6];
     vec4 position;               // emitter centre
-    vec4 frame_x, frame_y, frame_z; // frame_z: direction of emission; frame_y.w: 1 = SPOT that falls with the cosine to its axis
+    vec4 frame_x, frame_y, frame_z; // frame_z: direction of emission; frame_y.w: 1 = SPOT times the cosine to its axis
     vec4 half_u, half_v;         // AREA: half axes
     vec4 emission;               // rgb; w: radius of POINT and SPOT
-    vec4 cone;                   // SPOT: cosine of the half angle, blend, scale of X and Y. AREA: x = tangent of half the spread
+    vec4 cone;                   // SPOT: cosine of the half angle, blend, scale of X and Y. AREA: x = tan(half spread)
     ivec4 faces_a, faces_b;      // map layer of the faces +Z +X -X +Y | -Y -Z, -1: none
     float tan_half_angle;        // SUN
     float casts_shadow;
@@ -87,9 +87,9 @@ bool cone_reaches(float cosine, float slack) {
     return cosine > 0.0 && cosine + slack > light.cone.x;
 }
 
-// Share of a SPOT's intensity in the direction of a point, with the smooth edge Blender draws. Each point of its bulb has a
-// cone of its own: the edge is averaged over seven small disks in the bulb's, whose second moments are together those of the
-// bulb, and over an interval in each, whose second moment is that of the small disk.
+// Share of a SPOT's intensity in the direction of a point, with the smooth edge Blender draws. Each point of its bulb
+// has a cone of its own: the edge is averaged over seven small disks in the bulb's, whose second moments are together
+// those of the bulb, and over an interval in each, whose second moment is that of the small disk.
 float light_cone(vec3 position) {
     vec3 d = in_light_frame(position - light.position.xyz);
     float c = cone_cosine(d), start = light.cone.x, radius = light.emission.w, edge = c > start ? 1.0 : 0.0;
@@ -98,9 +98,9 @@ float light_cone(vec3 position) {
     if (!cone_reaches(c, slack))
         return 0.0;
     if (radius > 0.0 && c - slack < start + width) {
-        const vec2 places[7] = vec2[7](vec2(0.0), vec2(0.70710678, 0.0), vec2(-0.70710678, 0.0), vec2(0.35355339, 0.61237244),
-                                       vec2(-0.35355339, 0.61237244), vec2(0.35355339, -0.61237244),
-                                       vec2(-0.35355339, -0.61237244));
+        const vec2 places[7] = vec2[7](vec2(0.0), vec2(0.70710678, 0.0), vec2(-0.70710678, 0.0),
+                                       vec2(0.35355339, 0.61237244), vec2(-0.35355339, 0.61237244),
+                                       vec2(0.35355339, -0.61237244), vec2(-0.35355339, -0.61237244));
         vec3 across = radius / max(length(gradient), 1e-12) * gradient, along = cross(normalize(d), across);
         // The cosine grows with the sine of the same angle.
         float growth = 0.32732684 * radius * length(gradient) * inversesqrt(max(1.0 - c * c, 1e-12)) / width;
@@ -115,8 +115,8 @@ float light_cone(vec3 position) {
 }
 
 #ifdef SPREAD
-// Share of an area light's radiance that leaves its grid towards a point: the slats hide the rest (Blender D10594). It is
-// normalised so that the light's power stays what it is.
+// Share of an area light's radiance that leaves its grid towards a point: the slats hide the rest (Blender D10594).
+// It is normalised so that the light's power stays what it is.
 float light_spread(vec3 to_light) {
     float facing = -dot(to_light, light.frame_z.xyz);
     float sine = length(cross(to_light, light.frame_z.xyz));

@@ -8,7 +8,7 @@ uniform vec4 emission;   // rgb; a: 1 = holdout
 uniform sampler2D base_color_texture, alpha_texture, emission_texture;
 uniform vec4 texture_use; // x: base_color_texture, y: alpha_texture, z: 1 = alpha is the texture's own, 0 = its grey,
                           // w: emission_texture
-uniform vec4 clearness;   // rgb: share of the light that shines through and is not absorbed; a: 1 = tinted by the texture
+uniform vec4 clearness;   // rgb: share of the light that shines through, not absorbed; a: 1 = tinted by the texture
 uniform float shadow_threshold; // 0, or the alpha from which on a shadow is opaque, while there is none below
 uniform vec4 uv_rows[2]; // texture coordinates are these rows times (u, v, 1)
 uniform int use_vertex_color;

@@ -14,7 +14,7 @@ vec4 depth_range_cover(receiver r, vec2 extent) {
     return vec4((ivec4(low, high) >> level) + ivec4(0, 0, 1, 1)) * float(1 << level);
 }
 
-// Least and greatest light-space depth of the texels in the rectangle center +- (extent + spread); 1e30 outside the map.
+// Least and greatest light-space depth of the texels in the rectangle center +- (extent + spread); 1e30 off the map.
 vec2 depth_range(receiver r, vec2 extent) {
     vec2 size = vec2(r.map_size);
     extent += r.spread;
@@ -39,7 +39,7 @@ float nearest_depth(receiver r) {
     return r.near_depth + r.depth_span * texelFetch(min_max, ivec3(0, 0, r.layer), level).r;
 }
 
-// Scale of a blocker search: the kernel of the nearest blocker there can be. Each step looks up the nearest depth inside
+// Scale of a blocker search: the kernel of the nearest blocker there can be. Each step looks up the nearest depth in
 // the last rectangle, which can only shrink it (Guennebaud et al. 2006, section 4.2), and never loses a blocker.
 // `depths`: range of depths in the last rectangle looked up, which holds the final one.
 float search_scale(receiver r, int steps, out vec2 depths) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bounding planes of the shadow map's texels. On a plane nearness(depth) is linear in the map coordinate, so that a block
-// of texels of one surface lies between two parallel planes a rounding error apart, however steep it is; of minimum
-// and maximum depth the same block fills a box, which every steep receiver would touch.
+// Bounding planes of the shadow map's texels. On a plane nearness(depth) is linear in the map coordinate, so that a
+// block of texels of one surface lies between two parallel planes a rounding error apart, however steep it is; of
+// minimum and maximum depth the same block fills a box, which every steep receiver would touch.
 
 uniform sampler2DArray planes; // level 0: blocks of 4 x 4 texels; pass_planes.comp
 
@@ -19,8 +19,8 @@ struct linear {
     float value;
 };
 
-// Nearness of the points whose height (is_blocker) equals `height`: texels that are nearer are higher. Only for planes that
-// face the light and do not hold it: faces_light.
+// Nearness of the points whose height (is_blocker) equals `height`: texels that are nearer are higher. Only for planes
+// that face the light and do not hold it: faces_light.
 linear plane_nearness(receiver r, float height) {
     if (is_perspective())
         return linear(r.slope / height, r.level / height);
@@ -94,9 +94,9 @@ bool all_blocks(receiver r, question ask, bool solid) {
     return true;
 }
 
-// 1: no texel in the rectangle center +- (extent + spread) can block the receiver: each is lower than plane.x, farther than
-// limit.x, or outside the kernel of its own depth. 0: every texel does: is higher than plane.y and nearer than limit.y.
-// 0.5: undecided.
+// 1: no texel in the rectangle center +- (extent + spread) can block the receiver: each is lower than plane.x, farther
+// than limit.x, or outside the kernel of its own depth. 0: every texel does: is higher than plane.y and nearer than
+// limit.y. 0.5: undecided.
 float classify_region(receiver r, vec2 extent, vec2 plane, vec2 limit) {
     if (!faces_light(r, plane.x) || !faces_light(r, plane.y))
         return 0.5;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image-space sub-sampling (core/passes/subsampling.c): which pixel a texel of coarse_visibility is, and what is in it. It
-// has those with even full-image coordinates, so that what is interpolated does not depend on the crop.
+// Image-space sub-sampling (core/passes/subsampling.c): which pixel a texel of coarse_visibility is, and what is in it.
+// It has those with even full-image coordinates, so that what is interpolated does not depend on the crop.
 
 uniform vec2 first_pixel; // lower left corner of the first such pixel, from the crop's
 

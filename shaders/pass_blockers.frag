@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What blocks one light at every pixel, as a dense search of its shadow map finds it, whatever the technique: to look at,
-// not to shade with.
+// What blocks one light at every pixel, as a dense search of its shadow map finds it, whatever the technique: to look
+// at, not to shade with.
 #include "common_camera.glsl"
 #include "common_light.glsl"
 #include "common_shadow.glsl"
@@ -8,7 +8,7 @@
 
 uniform sampler2D gbuffer_depth, gbuffer_normal;
 
-layout(location = 0) out vec4 out_blockers; // x: metres to the average blocker, y: width of its penumbra, metres; 0: none
+layout(location = 0) out vec4 out_blockers; // metres: x: to the average blocker, y: width of its penumbra; 0: none
 
 const int SIDE = 32; // points of the emitter along each side
 const int REDUCTION = 2;

@@ -95,8 +95,8 @@ float least_facing(receiver r, region bounds, float plane) {
     return -plane / (bounds.maximum.z * length(vec3(q, 1.0)));
 }
 
-// A receiver p has its own normal n beside the tile's m. The height dot(n, x - p) of a texel's point x, whose ray meets the
-// tile's plane at a distance L of p, differs from dot(m, x - p) by |n - m| L at most where x is on the plane; below
+// A receiver p has its own normal n beside the tile's m. The height dot(n, x - p) of a texel's point x, whose ray meets
+// the tile's plane at a distance L of p, differs from dot(m, x - p) by |n - m| L at most where x is on the plane; below
 // it by less, above it by up to |n - m| h / facing more. L is the texel's distance on the map over `facing`, and
 // receiver_set_bias tolerates 5e-4 of the kernel's radius, which that distance does not exceed.
 float classify_tile(tile t, region bounds, int layer) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One level of the pyramid of the ESSM basis, from the level below or from the map: of each block of texels the means of
-// e^(c (t - m)), of t e^(c (t - m)) and of t, and the greatest t, m. Relative to their own m, no value is ever lost to
-// the range of a float. Also finds the level's greatest value as it would enter a table with a tile per block.
+// One level of the pyramid of the ESSM basis, from the level below or from the map: of each block of texels the means
+// of e^(c (t - m)), of t e^(c (t - m)) and of t, and the greatest t, m. Relative to their own m, no value is ever lost
+// to the range of a float. Also finds the level's greatest value as it would enter a table with a tile per block.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(rgba32f, binding = 0) uniform writeonly image2DArray target;

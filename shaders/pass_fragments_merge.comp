@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One level of filtered lists from the level below: merges the lists of 2 x 2 texels (Selgrad et al. 2015, figure 3). A
-// list gets as much room as its four sources have together, and what merging saves stays unused; or, where that would be too
-// much, it is merged twice: COUNT to know its length, FILL to store it.
+// One level of filtered lists from the level below: merges the lists of 2 x 2 texels (Selgrad et al. 2015, figure 3).
+// A list gets as much room as its four sources have together, and what merging saves stays unused; or, where that would
+// be too much, it is merged twice: COUNT to know its length, FILL to store it.
 #include "common_fragments.glsl"
 #include "common_accumulation.glsl"
 

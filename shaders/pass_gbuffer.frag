@@ -27,12 +27,13 @@ layout(location = 4) out uvec2 out_links;
 #endif
 
 #ifdef SPECIAL
-// Random number of the sample. Each surface has its own, or one behind another would be seen in the same samples: it is known
-// by the digits of its plane's distance, which depend neither on the order of drawing nor on the scene's unit.
+// Random number of the sample. Each surface has its own, or one behind another would be seen in the same samples: it is
+// known by the digits of its plane's distance, which depend neither on the order of drawing nor on the scene's unit.
 float layer_random(vec3 plane_normal) {
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     uint digits = floatBitsToUint(dot(plane_normal, position)) >> 13u & 0x3ffu;
-    return stratified_random(uint(camera.sample_index), pixel.x + hash(pixel.y * 747796405u + hash(digits * 2891336453u + 1u)));
+    uint surface = hash(digits * 2891336453u + 1u);
+    return stratified_random(uint(camera.sample_index), pixel.x + hash(pixel.y * 747796405u + surface));
 }
 #endif
 

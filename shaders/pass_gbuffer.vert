@@ -25,7 +25,7 @@ void main() {
     vec3 n = octahedral_decode(vertex_normal);
     normal = vec3(dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n));
     float side = dot(a, cross(b, c)) < 0.0 ? -1.0 : 1.0;
-    // Of length 1 before it is interpolated, as Cycles and EEVEE have it: an uneven scale would favour some of the corners.
+    // Of length 1 before it is interpolated, as Cycles and EEVEE have it: an uneven scale would favour some corners.
     normal *= side * inversesqrt(max(dot(normal, normal), 1e-37));
 #ifdef SPECIAL
     mirrored = side < 0.0 ? 1 : 0;

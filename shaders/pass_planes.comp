@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One level of the bounding planes (common_planes.glsl): rg = slope per texel, b and a = least and greatest nearness at the
-// block's centre of parallel planes that hold all its texels between them. Texels with nothing in them block nobody:
-// they bring down the least and leave the greatest.
+// One level of the bounding planes (common_planes.glsl): rg = slope per texel, b and a = least and greatest nearness at
+// the block's centre of parallel planes that hold all its texels between them. Texels with nothing in them block
+// nobody: they bring down the least and leave the greatest.
 #include "common_light.glsl"
 #include "common_shadow.glsl"
 #include "common_planes.glsl"

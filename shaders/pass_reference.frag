@@ -28,7 +28,7 @@ float sample_weight(vec3 position, vec3 normal) {
 }
 
 #ifdef TRANSLUCENT
-// Share of the light that passes all translucent surfaces before the receiver at a texel, none if an opaque one hides it.
+// Share of the light that passes all translucent surfaces before the receiver at a texel; none if one is opaque.
 vec3 texel_transmittance(receiver r, vec2 coordinate) {
     float depth;
     if (blocker_at(r, coordinate, depth))

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Marks the pixels at which a sample may not use the key sample's irradiance: where it sees another surface, or where a
-// pixel covers so much, such as more than a texel of a shadow map, that a light changes within it. Depth 1 = drawn, 0 = reused.
+// pixel covers so much, such as more than a texel of a shadow map, that a light changes within it. Depth 1 = drawn,
+// 0 = reused.
 #include "common_camera.glsl"
 #include "common_steady.glsl"
 
@@ -15,7 +16,7 @@ bool is_reusable(vec2 coordinate, ivec2 pixel) {
     vec3 normal = octahedral_decode(normals.zw);
     vec3 position = camera_position(coordinate, depth);
     vec3 step = position - camera_position_in(key_window, coordinate, before);
-    // The samples lie symmetrically about the pixel's centre: what changes evenly over it cancels, if it changes little.
+    // The samples lie symmetrically about the pixel's centre: what changes evenly over it cancels, if it is little.
     return depth * before > 0.0 && all(lessThan(turn, vec4(vec2(0.1), vec2(0.3)))) &&
            abs(dot(normal, step)) < 0.5 * pixel_width(position) && is_steady(position, normal);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a sample adds to the sums: the light its surfaces reflect (LIT), and, once per sample (FIRST), what needs no light:
-// background, ambient light, and EMISSION and NORMAL if they are wanted.
+// What a sample adds to the sums: the light its surfaces reflect (LIT), and, once per sample (FIRST), what needs no
+// light: background, ambient light, and EMISSION and NORMAL if they are wanted.
 #include "common_camera.glsl"
 
 uniform sampler2D gbuffer_depth, gbuffer_normal, gbuffer_color;

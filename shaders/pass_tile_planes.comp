@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For each tile of a level the plane its tables refer to: the one that most of its texels lie in and few behind, since that
-// is what shadows fall on, moved back until no surface is behind it. Where there is no such plane: one across the view at the
-// farthest depth. xyz: value at the tile's centre and slopes (depth_to_linear); w: distance moved, as t, negative if there
-// are texels with nothing in them, which count as if they were in the plane.
+// For each tile of a level the plane its tables refer to: the one that most of its texels lie in and few behind, since
+// that is what shadows fall on, moved back until no surface is behind it. Where there is no such plane: one across the
+// view at the farthest depth. xyz: value at the tile's centre and slopes (depth_to_linear); w: distance moved, as t,
+// negative if there are texels with nothing in them, which count as if they were in the plane.
 
 layout(local_size_x = 64) in;
 layout(rgba32f, binding = 0) uniform writeonly image2DArray target;

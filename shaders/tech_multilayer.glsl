@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Filtered multi-layer shadow maps (Selgrad, Dachsbacher, Meyer, Stamminger 2015). An occluder at some depth is looked up
-// in the level whose filter is as wide as the kernel of that depth.
+// Filtered multi-layer shadow maps (Selgrad, Dachsbacher, Meyer, Stamminger 2015). An occluder at some depth is looked
+// up in the level whose filter is as wide as the kernel of that depth.
 #include "common_min_max.glsl"
 #include "common_fragments.glsl"
 #include "common_accumulation.glsl"
@@ -14,7 +14,7 @@ uniform int level_count, p_lookups, p_antialiasing;
 // What the fragments of one level hide between the depths of two levels.
 struct share {
     OPACITY opacity;
-    vec2 weight; // of the upper of the two levels: sum over the fragments, each weighted by its opacity; and that of these
+    vec2 weight; // of the upper of the two levels: sum over the fragments, each weighted by its opacity; that of these
 };
 
 float mean(OPACITY opacity) {
@@ -114,7 +114,8 @@ OPACITY opacity_above(receiver r, float height, float depth, float width, OPACIT
 
 // Adds the fragments of one texel: nearer to the light than the level's own depth to `lower`, since there this level is
 // the lower of two, farther to `upper`.
-void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, float weight, inout share lower, inout share upper) {
+void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, float weight, inout share lower,
+             inout share upper) {
     ivec4 l = levels[level];
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(l.y))))
         return;
@@ -157,8 +158,10 @@ void look_up_bilinear(receiver r, vec2 center, int level, level_depths d, float 
     vec4 w = vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
     // The emitter that is seen lies above the receiver's plane, so texels below it tell nothing.
     vec4 above;
-    for (int i = 0; i < 4; i++)
-        above[i] = d.own > r.position.z || height_above(r, texel_center(l, texel + ivec2(i & 1, i >> 1)), d.own) > 0.0 ? w[i] : 0.0;
+    for (int i = 0; i < 4; i++) {
+        vec2 center = texel_center(l, texel + ivec2(i & 1, i >> 1));
+        above[i] = d.own > r.position.z || height_above(r, center, d.own) > 0.0 ? w[i] : 0.0;
+    }
     float sum = above.x + above.y + above.z + above.w;
     w = sum > 0.0 ? above / sum : w;
     lower = upper = nothing();
@@ -166,7 +169,7 @@ void look_up_bilinear(receiver r, vec2 center, int level, level_depths d, float 
         look_up(r, level, texel + ivec2(i & 1, i >> 1), d, side, w[i], lower, upper);
 }
 
-// The first level whose filter is as wide as the widest kernel of any caster around; -1: nothing can shadow the receiver.
+// The first level whose filter is as wide as the widest kernel of any caster around; -1: nothing shadows the receiver.
 int last_level(receiver r, float side, float least) {
     float scale = max(kernel_scale(r, nearest_depth(r)), 0.0);
     vec2 extent;

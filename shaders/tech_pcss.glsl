@@ -15,8 +15,8 @@ vec2 technique_extent(receiver r) {
 
 // Counts a texel that hides some point of the emitter: its offset must lie within the kernel of its own depth. Without
 // this the search averages texels no ray to the light passes, such as a rising floor beside the receiver. A texel of
-// the map covers the smaller a share of the emitter the wider the kernel of its depth; that share is its weight, so that
-// a twig near the light does not outweigh the bowl that hides the light.
+// the map covers the smaller a share of the emitter the wider the kernel of its depth; that share is its weight, so
+// that a twig near the light does not outweigh the bowl that hides the light.
 void search_tap(receiver r, vec2 offset, vec2 reach, inout vec2 sum) {
     float depth;
     if (!blocker_at(r, r.center + offset, depth))
