@@ -12,7 +12,8 @@ declared=$(sed -n 's/^PNB_API .*\b\(pnb_[a-z0-9_]*\)(.*/\1/p' "$here/../core/inc
 check "exactly the functions of penumbra.h are exported" diff <(echo "$declared") <(echo "$exported")
 
 # pthread and dl are part of libc; the loader provides thread-local storage.
-needed=$(readelf -d "$library" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' | grep -Ev '^(libc\.so\.6|libm\.so\.6|ld-linux.*)$' || true)
+needed=$(readelf -d "$library" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p' |
+    grep -Ev '^(libc\.so\.6|libm\.so\.6|ld-linux.*)$' || true)
 check "only libc and libm are needed${needed:+, not $needed}" test -z "$needed"
 
 dynamic=$(readelf -d "$library")

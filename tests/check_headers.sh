@@ -16,8 +16,8 @@ int main(void) {
 }'
 
 compile() {
-    "$1" -x "$2" "-std=$3" -pedantic-errors -Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers -Werror \
-        -fsyntax-only -I "$here/../core/include" - <<<"$program"
+    "$1" -x "$2" "-std=$3" -pedantic-errors -Wall -Wextra -Wconversion -Wshadow -Wno-missing-field-initializers \
+        -Werror -fsyntax-only -I "$here/../core/include" - <<<"$program"
 }
 
 for standard in c99 c11 c17 c++11 c++17 c++20; do

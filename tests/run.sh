@@ -56,13 +56,14 @@ build_into() {
     cmake -G Ninja -S "$root" -B "$folder" -DPNB_WERROR=ON -DPNB_TESTS=ON "$@" >/dev/null && cmake --build "$folder"
 }
 
-# The test programs that CMake knows; each counts as one, however much it checks. As many at once as there are processors,
-# with one thread of llvmpipe each: two threads of one program wait for each other a third of the time.
+# The test programs that CMake knows; each counts as one, however much it checks. As many at once as there are
+# processors, with one thread of llvmpipe each: two threads of one program wait for each other a third of the time.
 run_programs() {
     local report=$1/tests.xml status=0
     rm -f "$report"
     # Indented: what a program counts is not what the suite counts.
-    LP_NUM_THREADS=1 ctest --test-dir "$1" -j "$(nproc)" --output-on-failure --no-tests=error --output-junit "$report" | sed -u 's/^/    /' || status=$?
+    LP_NUM_THREADS=1 ctest --test-dir "$1" -j "$(nproc)" --output-on-failure --no-tests=error \
+        --output-junit "$report" | sed -u 's/^/    /' || status=$?
     count() { sed -n "s/.*\b$1=\"\([0-9]*\)\".*/\1/p" "$report" | head -n 1; }
     local tests failures skipped
     tests=$(count tests) failures=$(count failures) skipped=$(count skipped)

@@ -11,7 +11,8 @@ for path in sorted(shaders.iterdir()):
     if path.suffix not in ('.glsl', '.vert', '.frag', '.comp'):
         continue
     # An include is replaced by another file; what stands between includes is handed on as it is.
-    parts = '\n'.join('\0' if line.startswith('#include') else line for line in path.read_text().splitlines()).split('\0')
+    lines = path.read_text().splitlines()
+    parts = '\n'.join('\0' if line.startswith('#include') else line for line in lines).split('\0')
     if not any(all(part.strip() in text for part in parts) for text in texts):
         unused.append(path.name)
 sys.exit(f"in none of {len(texts)} sources: {', '.join(unused)}" if unused or not texts else 0)

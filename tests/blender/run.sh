@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# run.sh BUILD_DIR [--window] [TEST...]: installs the add-on's zip into an empty Blender profile and runs the tests inside
-# Blender, without a window and then, those of window/, in one on a display of its own. TEST is a module, class or method
-# such as test_render.Border; after --window one of window/, such as test_viewport.Edits. BLENDER names the program,
-# TEST_SCRIPT another script to run with the arguments.
+# run.sh BUILD_DIR [--window] [TEST...]: installs the add-on's zip into an empty Blender profile and runs the tests
+# inside Blender, without a window and then, those of window/, in one on a display of its own. TEST is a module, class
+# or method such as test_render.Border; after --window one of window/, such as test_viewport.Edits. BLENDER names the
+# program, TEST_SCRIPT another script to run with the arguments.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 build=$(CDPATH= cd -- "$1" && pwd)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs inside Blender (CONTRIBUTING.md says how): times of exports of large scenes, medians of five, and the memory they
-take. Compare them with others of the same machine only."""
+"""Runs inside Blender (CONTRIBUTING.md says how): times of exports of large scenes, medians of five, and the memory
+they take. Compare them with others of the same machine only."""
 
 import cProfile
 import os
@@ -36,9 +36,11 @@ def resident_bytes():
 def grid(name, side):
     """A rolling surface of side x side quads with a UV map."""
     mesh = bpy.data.meshes.new(name)
-    points = [(x / side, y / side, 0.1 * ((x * y + len(name)) % 7) / side) for y in range(side + 1) for x in range(side + 1)]
+    points = [(x / side, y / side, 0.1 * ((x * y + len(name)) % 7) / side)
+              for y in range(side + 1) for x in range(side + 1)]
     row = side + 1
-    faces = [(y * row + x, y * row + x + 1, y * row + row + x + 1, y * row + row + x) for y in range(side) for x in range(side)]
+    corners = (y * row + x for y in range(side) for x in range(side))
+    faces = [(i, i + 1, i + row + 1, i + row) for i in corners]
     mesh.from_pydata(points, [], faces)
     mesh.uv_layers.new()
     mesh.materials.append(bpy.data.materials[0])
@@ -62,7 +64,8 @@ RESULTS = []
 
 def report(text, value, unit, limit):
     RESULTS.append(value <= limit)
-    print(f"SCALE {'ok    ' if value <= limit else 'MISSED'} {text}: {value:.1f} {unit} (limit {limit} {unit})", flush=True)
+    verdict = 'ok    ' if value <= limit else 'MISSED'
+    print(f"SCALE {verdict} {text}: {value:.1f} {unit} (limit {limit} {unit})", flush=True)
 
 
 def export_ms(addon, kept=None):

@@ -85,8 +85,9 @@ def repeat(name, count, action):
         if number == int(count * WARM_UP):
             before = resident_bytes()
     growth = resident_bytes() / before - 1.0
-    print(f"SOAK {'ok    ' if growth <= GROWTH else 'FAILED'} {name}: {count} times, memory {growth:+.2%} of {before / 2 ** 20:.0f} "
-          f"MiB, {threading.active_count()} threads, {time.perf_counter() - start:.0f} s", flush=True)
+    verdict = 'ok    ' if growth <= GROWTH else 'FAILED'
+    print(f"SOAK {verdict} {name}: {count} times, memory {growth:+.2%} of {before / 2 ** 20:.0f} MiB, "
+          f"{threading.active_count()} threads, {time.perf_counter() - start:.0f} s", flush=True)
     return growth <= GROWTH
 
 
@@ -101,7 +102,8 @@ def main():
               ("cancel", 50, cancel))
     results = [repeat(name, max(int(count * scale), 10), action) for name, count, action in rounds]
     _latencies.sort()
-    print(f"SOAK        from cancel to end: median {_latencies[len(_latencies) // 2]:.0f} ms, longest {_latencies[-1]:.0f} ms")
+    median, longest = _latencies[len(_latencies) // 2], _latencies[-1]
+    print(f"SOAK        from cancel to end: median {median:.0f} ms, longest {longest:.0f} ms")
     print(f"{sum(results)} passed, {len(results) - sum(results)} failed", flush=True)
     sys.exit(not all(results))
 

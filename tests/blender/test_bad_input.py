@@ -174,7 +174,8 @@ class BadInput(SceneTest):
         render = self.scene.render
         for width, height, percentage in ((1, 1, 25), (1, 10, 25), (8193, 4, 100)):
             with self.subTest(size=(width, height)):    # Blender takes 4 pixels at least, but a share of them
-                render.resolution_x, render.resolution_y = (math.ceil(100 * side / percentage) for side in (width, height))
+                render.resolution_x = math.ceil(100 * width / percentage)
+                render.resolution_y = math.ceil(100 * height / percentage)
                 render.resolution_percentage = percentage
                 self.assertEqual(len(self.finite()), width * height)
 

@@ -475,7 +475,8 @@ class Lights(ExportTest):
             add_light("Flat", 'AREA', **settings)
         add_camera()
         self.assertEqual(self.captured()[0].light_count, 0)
-        self.assertEqual(self.warnings(), [f"light '{name}' has no area and gives no light" for name in ("Flat", "Flat.001")])
+        self.assertEqual(self.warnings(),
+                         [f"light '{name}' has no area and gives no light" for name in ("Flat", "Flat.001")])
 
     def test_no_scale(self):
         """Against Cycles in the scene rows dark_lights."""

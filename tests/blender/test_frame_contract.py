@@ -45,7 +45,7 @@ class Borders(SceneTest):
         render.use_crop_to_border = True
         cropped = self.render("cropped")
         width, _height, alpha = placed['ViewLayer.Combined.A']
-        inside = [index for index, value in enumerate(alpha) if value != 0.0]   # the film is opaque where it was rendered
+        inside = [index for index, value in enumerate(alpha) if value != 0.0]   # the film is opaque where rendered
         columns, rows = {index % width for index in inside}, {index // width for index in inside}
         self.assertEqual(cropped['ViewLayer.Combined.A'][:2], (len(columns), len(rows)), border)
         self.assertEqual(len(inside), len(columns) * len(rows), border)

@@ -65,12 +65,12 @@ class Radiometry(CyclesTest):
                    rotation=(0.3, 0.4, 0.5), scale=(2, 1, 3))
 
     def test_spot_large_with_a_hard_edge(self):
-        """All of the edge's width is that of the bulb, a thirteenth and a fifth of the distance. Before Blender 4 the bulb is a
-        disk across the axis; ours faces the surface, which is .0286 for the greater one, .0202 since."""
+        """All of the edge's width is that of the bulb, a thirteenth and a fifth of the distance. Before Blender 4 the
+        bulb is a disk across the axis; ours faces the surface, which is .0286 for the greater one, .0202 since."""
         for radius, tolerance in ((0.15, 0.01), (0.4, 0.03)):
             with self.subTest(radius=radius):
-                self.check(tolerance, 'SPOT', block=8, spot_size=math.radians(40), spot_blend=0.0, shadow_soft_size=radius,
-                           rotation=(0.2, 0.1, 0))
+                self.check(tolerance, 'SPOT', block=8, spot_size=math.radians(40), spot_blend=0.0,
+                           shadow_soft_size=radius, rotation=(0.2, 0.1, 0))
 
     def test_sun_small(self):
         self.check(0.02, 'SUN', energy=2.0, angle=0.01, rotation=(0.5, 0.3, 0), scale=(2, 2, 2))
@@ -98,9 +98,10 @@ class Radiometry(CyclesTest):
         self.check(0.03, 'AREA', block=2, shape='ELLIPSE', size=1.0, size_y=0.5, spread=math.radians(60))
 
     def test_spread_narrower_than_the_light(self):
-        """Each point sees a part of the emitter that is smaller than itself. Its brightness falls from the middle of that
-        part to nothing at its rim, which makes Cycles' samples differ by 0.7 of their mean."""
-        self.check(0.02, 'AREA', block=4, shape='RECTANGLE', size=1.5, size_y=1.0, spread=math.radians(20), location=(0, 0, 1))
+        """Each point sees a part of the emitter that is smaller than itself. Its brightness falls from the middle of
+        that part to nothing at its rim, which makes Cycles' samples differ by 0.7 of their mean."""
+        self.check(0.02, 'AREA', block=4, shape='RECTANGLE', size=1.5, size_y=1.0, spread=math.radians(20),
+                   location=(0, 0, 1))
 
     @unittest.skipUnless(bpy.app.version >= (4, 4), "before Blender 4.4")
     def test_exposure_and_temperature(self):
@@ -111,7 +112,8 @@ class Radiometry(CyclesTest):
     def test_not_normalized(self):
         for kind, settings in (('AREA', {'shape': 'DISK', 'size': 0.5, 'scale': (2, 1, 1)}),
                                ('POINT', {'shadow_soft_size': 0.3}),
-                               ('SPOT', {'shadow_soft_size': 0.2, 'spot_size': 2.0, 'spot_blend': 0.0}), ('SUN', {'angle': 0.2})):
+                               ('SPOT', {'shadow_soft_size': 0.2, 'spot_size': 2.0, 'spot_blend': 0.0}),
+                               ('SUN', {'angle': 0.2})):
             with self.subTest(kind=kind):
                 self.check(0.03, kind, normalize=False, **settings)
 

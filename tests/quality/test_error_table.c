@@ -26,8 +26,8 @@ bool tool_error(const char *format, ...) {
 /* Highest RMSE of techniques on a scene with its own light. HARD and PCF do not know the light's size, so theirs
  * is what the scene makes it, and is kept for changes to be seen. A ceiling is the figure of the quick table on
  * llvmpipe plus a twentieth and 0.002: other OpenGL implementations rasterise a little differently. The quick table's
- * 100 points of the light are few where only a tip of it rises above the horizon: on sphere, slot and all-lights PCSS errs
- * by .040, .006 and .009 there, and by .025, .003 and .007 against 32 x 32. */
+ * 100 points of the light are few where only a tip of it rises above the horizon: on sphere, slot and all-lights PCSS
+ * errs by .040, .006 and .009 there, and by .025, .003 and .007 against 32 x 32. */
 static const char *const ceiling_techniques[] = {"HARD", "PCF", "PCSS", "ESM", "ESSM", "MULTILAYER"};
 #define CEILINGS (sizeof ceiling_techniques / sizeof *ceiling_techniques)
 static const struct ceiling {

@@ -169,8 +169,8 @@ static void classification(const char *name) {
 
 /* ---- Micro-subdivision and elliptic kernels of ESSM ---- */
 
-/* Maps of 2048 and, for the stairs, 288 rows: at the foot of steps a texel decides, which leaves about 30 wrong pixels of
- * 144 rows from 3 parts on, two more or less by chance. */
+/* Maps of 2048 and, for the stairs, 288 rows: at the foot of steps a texel decides, which leaves about 30 wrong pixels
+ * of 144 rows from 3 parts on, two more or less by chance. */
 static void subdivision(const char *name, uint32_t rows) {
     struct test_scene *test = quality_scene(name, TEST_LIGHT_RECTANGLE, 0, NAN);
     pnb_settings settings = quality_scene_settings(NULL, test, rows);

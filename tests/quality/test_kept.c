@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later
- * What a QUICK job leaves for the next: whatever changes, the picture is that of a job which starts from nothing, bit by
- * bit but where maps fitted to an earlier view serve; and what need not be drawn again is not. */
+ * What a QUICK job leaves for the next: whatever changes, the picture is that of a job which starts from nothing, bit
+ * by bit but where maps fitted to an earlier view serve; and what need not be drawn again is not. */
 #include "quality.h"
 
 #define WIDTH  160

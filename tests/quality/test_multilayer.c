@@ -48,8 +48,8 @@ static void overlapping_occluders(void) {
     }
 }
 
-/* Root mean square of the second difference along a scanline across a wide penumbra on a plane. In theory it is 0, for the
- * edge is parallel to the light's side; interpolation between texels bends at each of them. */
+/* Root mean square of the second difference along a scanline across a wide penumbra on a plane. In theory it is 0, for
+ * the edge is parallel to the light's side; interpolation between texels bends at each of them. */
 static double texel_structure(double pyramid, double lookups) {
     struct test_scene *test = quality_scene("half-plane", TEST_LIGHT_RECTANGLE, 2, NAN);
     pnb_settings settings = quality_scene_settings("MULTILAYER", test, 360);

@@ -322,7 +322,8 @@ static void plane_is_even(struct bench *bench, int tile, bool floats, double all
 
 /* NaN counts as nothing there, as if the depth were 1. In sums of floats it would spread. */
 static void nan_does_not_spread(struct bench *bench, bool floats) {
-    struct table_case c = {.side = 64, .tile = 64, .floats = floats, .depths = random_pixels(64 * 64, 3), .with_nan = true};
+    struct table_case c = {
+        .side = 64, .tile = 64, .floats = floats, .depths = random_pixels(64 * 64, 3), .with_nan = true};
     c.depths[1000] = NAN;
     if (table_make(bench, &c)) {
         static float results[RECTANGLES][4];
@@ -330,7 +331,8 @@ static void nan_does_not_spread(struct bench *bench, bool floats) {
             memcpy(results[i], (float[4]){0, 0, 64, 64}, 16);
         look_up(&bench->backend.gl, &c, results);
         c.depths[1000] = 1;
-        const double error = (double)results[0][0] / 4096 / (floats ? 1.0 : (double)SCALE) - mean_over(&c, (float[4]){0, 0, 64, 64});
+        const double mean = (double)results[0][0] / 4096 / (floats ? 1.0 : (double)SCALE);
+        const double error = mean - mean_over(&c, (float[4]){0, 0, 64, 64});
         printf("a map with a NaN: mean off by %.1e\n", error);
         CHECK_AT_MOST(fabs(error), 1.0 / 1048576);
     }

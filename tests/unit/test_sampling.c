@@ -133,7 +133,8 @@ static double line_error(float points[][2], int count, bool disk, double angle) 
 }
 
 /* Edges of shadows run in all directions over a light. As even as points can be (Beck 1987): count^(-3/4), where random
- * points have count^(-1/2), and so has a lattice in its worst directions: 0.6 / count^(3/4) with 64 points, 1.2 with 1024. */
+ * points have count^(-1/2), and so has a lattice in its worst directions: 0.6 / count^(3/4) with 64 points, 1.2 with
+ * 1024. */
 static void lines_of_any_direction_get_their_share(void) {
     enum { DIRECTIONS = 90 };
     static float points[4096][2];

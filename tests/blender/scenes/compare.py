@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs inside Blender: renders every row with Cycles and with Penumbra and writes the numbers and pictures.
 
-After `--`: the folder of the results and names of rows (none: all). Cycles' pictures are kept there from run to run, by the
-text of the row and of its stage: delete them after changes of functions that rows share."""
+After `--`: the folder of the results and names of rows (none: all). Cycles' pictures are kept there from run to run, by
+the text of the row and of its stage: delete them after changes of functions that rows share."""
 
 import hashlib
 import json
@@ -40,7 +40,8 @@ def set_up(scene):
     scene.render.filter_size = cycles.filter_width
     options = scene.penumbra
     options.technique, options.light_samples, options.samples = 'REFERENCE', 6, 144
-    options.shadow_map_size = 256   # texels are a quarter of a pixel; finer ones change no number here and take five times as long
+    # Texels are a quarter of a pixel; finer ones change no number here and take five times as long.
+    options.shadow_map_size = 256
 
 
 def build(row):

@@ -435,7 +435,7 @@ def node_group_and_reroute(stage):
 
 @row('materials')
 def backface_culling_camera(stage):
-    """Back faces are not seen: an inside-out cube, which Cycles gets by Transparent where a face is seen from behind."""
+    """Back faces are not seen: an inside-out cube, in Cycles by Transparent where a face is seen from behind."""
     nodes = Nodes()
     material = nodes.surface(nodes.add('BsdfDiffuse').outputs[0])
     material.use_backface_culling = True

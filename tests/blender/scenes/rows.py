@@ -8,17 +8,17 @@ import bpy
 
 from harness import add_camera, add_cube, add_light, add_mesh, add_object, add_plane, add_world, white_material
 
-__all__ = ['ROWS', 'Stage', 'row', 'refine', 'radians', 'bpy', 'add_camera', 'add_cube', 'add_light', 'add_mesh', 'add_object',
-           'add_plane', 'add_world', 'white_material']
+__all__ = ['ROWS', 'Stage', 'row', 'refine', 'radians', 'bpy', 'add_camera', 'add_cube', 'add_light', 'add_mesh',
+           'add_object', 'add_plane', 'add_world', 'white_material']
 
 ROWS = []
 
 WIDTH, HEIGHT = 96, 64
 
 # Largest errors that pass, unless a row says why it needs others.
-# Coverage: mean difference of alpha; a tenth of the pixels touch outlines, where half of one sub-pixel sample in 144 and
-# Cycles' noise are .0004 together. Position: distance of the centres of light, in pixels. Light: RMSE over the mean, of which
-# the noise of 256 samples of Cycles and of our sub-pixel samples is up to .018.
+# Coverage: mean difference of alpha; a tenth of the pixels touch outlines, where half of one sub-pixel sample in 144
+# and Cycles' noise are .0004 together. Position: distance of the centres of light, in pixels. Light: RMSE over the
+# mean, of which the noise of 256 samples of Cycles and of our sub-pixel samples is up to .018.
 LIMITS = {'coverage': 0.002, 'position': 0.1, 'light': 0.02}
 
 

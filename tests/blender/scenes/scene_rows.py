@@ -141,7 +141,8 @@ def _strands(count=14):
     """Arcs over the floor: points and radius by strand."""
     for number in range(count):
         x = -1.1 + 2.2 * number / (count - 1)
-        yield [(x, -0.6 + 0.3 * step, 0.15 + 0.35 * sin(step * 0.7 + number)) for step in range(6)], 0.015 + 0.01 * (number % 3)
+        points = [(x, -0.6 + 0.3 * step, 0.15 + 0.35 * sin(step * 0.7 + number)) for step in range(6)]
+        yield points, 0.015 + 0.01 * (number % 3)
 
 
 # Strands a pixel wide are all outline.
@@ -476,7 +477,8 @@ def light_and_shadow_linking(stage):
 
 
 def _second_light():
-    return add_light("Second", 'POINT', location=(-1.2, -1.2, 2.2), energy=120, color=(1, 0.5, 0.2), shadow_soft_size=0.15)
+    return add_light("Second", 'POINT', location=(-1.2, -1.2, 2.2), energy=120, color=(1, 0.5, 0.2),
+                     shadow_soft_size=0.15)
 
 
 # ---- Lights ----
@@ -597,5 +599,5 @@ def lights_many(stage):
     stage.light.hide_render = True
     for number in range(12):
         angle = 2 * pi * number / 12
-        add_light("Small", 'POINT', location=(1.5 * cos(angle), 1.5 * sin(angle), 1.5), energy=15, shadow_soft_size=0.05,
-                  color=(1, number / 12, 0.5))
+        add_light("Small", 'POINT', location=(1.5 * cos(angle), 1.5 * sin(angle), 1.5), energy=15,
+                  shadow_soft_size=0.05, color=(1, number / 12, 0.5))

@@ -20,7 +20,8 @@ from mathutils import Quaternion
 BALLS, RINGS = 10, 71            # each ball has 2 * RINGS * (RINGS - 1) triangles
 MOVES, ORBIT_SECONDS, QUIET = 15, 6.0, 0.7
 # TARGET: with first pictures as small as the user's latency asks for; PENUMBRA: of all pixels.
-ENGINES = {'PENUMBRA': 'PENUMBRA', 'TARGET': 'PENUMBRA', 'EEVEE': None, 'CYCLES': 'CYCLES', 'NOTHING': 'LATENCY_NOTHING'}
+ENGINES = {'PENUMBRA': 'PENUMBRA', 'TARGET': 'PENUMBRA', 'EEVEE': None, 'CYCLES': 'CYCLES',
+           'NOTHING': 'LATENCY_NOTHING'}
 
 
 class Nothing(bpy.types.RenderEngine):
@@ -175,7 +176,8 @@ def measure_orbit(display, region_3d, blocked):
 def measure(options, display, blocked):
     lamp = make_scene()
     print(f"{2 * RINGS * (RINGS - 1) * BALLS + 2} triangles, TARGET has a latency of {options.latency} ms")
-    print(f"{'engine':<10}{'lamp to pixels, ms: median':>28}{'worst':>8}{'orbit, 1/s':>12}{'longest block, ms':>20}  scale")
+    print(f"{'engine':<10}{'lamp to pixels, ms: median':>28}{'worst':>8}{'orbit, 1/s':>12}"
+          f"{'longest block, ms':>20}  scale")
     for name in options.engines:
         identifier = ENGINES[name] or eevee()
         region_3d = show(identifier, options.latency if name == 'TARGET' else 2000)

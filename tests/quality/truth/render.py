@@ -44,8 +44,8 @@ def set_up_eevee(scene, samples):
     engines = [e.identifier for e in scene.render.bl_rna.properties["engine"].enum_items]
     scene.render.engine = "BLENDER_EEVEE_NEXT" if "BLENDER_EEVEE_NEXT" in engines else "BLENDER_EEVEE"
     scene.render.filter_size = 0.01
-    settings = {"taa_render_samples": samples, "use_soft_shadows": True, "use_shadow_high_bitdepth": True, "light_threshold": 0.0001,
-                "shadow_cube_size": "4096", "shadow_cascade_size": "4096"}
+    settings = {"taa_render_samples": samples, "use_soft_shadows": True, "use_shadow_high_bitdepth": True,
+                "light_threshold": 0.0001, "shadow_cube_size": "4096", "shadow_cascade_size": "4096"}
     for name, value in settings.items():
         if hasattr(scene.eevee, name):
             setattr(scene.eevee, name, value)

@@ -29,7 +29,8 @@ def blender(arguments, log, display=False):
 
 
 def render(out, scene, engine, samples, prefix):
-    blender([os.path.join(out, scene + ".blend"), "--python-exit-code", "1", "--python", os.path.join(FOLDER, "render.py"),
+    script = os.path.join(FOLDER, "render.py")
+    blender([os.path.join(out, scene + ".blend"), "--python-exit-code", "1", "--python", script,
              "--", engine, str(samples), prefix], prefix + ".log", engine == "EEVEE")
     with open(prefix + ".json", encoding="ascii") as file:
         return json.load(file)["seconds"]
@@ -68,7 +69,7 @@ def counted_pixels(width, height, unshadowed):
     for y in range(1, height - 1):
         for x in range(1, width - 1):
             i = y * width + x
-            near = (*unshadowed[i - width - 1:i - width + 2], *unshadowed[i - 1:i + 2], *unshadowed[i + width - 1:i + width + 2])
+            near = [unshadowed[j + k] for j in (i - width, i, i + width) for k in (-1, 0, 1)]
             high = max(near)
             if unshadowed[i] > 0 and high - min(near) < EDGE_VARIATION * high:
                 counted.append(i)
@@ -88,7 +89,7 @@ def heat(a, b, pixels):
     result = bytearray(b"\x18\x20\x50" * len(a))
     for i in pixels:
         t = min(1.0, abs(a[i] - b[i]) / 0.1)
-        result[3 * i:3 * i + 3] = (round(255 * min(1, 3 * t)), round(255 * min(1, max(0, 3 * t - 1))), round(255 * max(0, 3 * t - 2)))
+        result[3 * i:3 * i + 3] = (round(255 * max(0, min(1, 3 * t - channel))) for channel in range(3))
     return bytes(result)
 
 
@@ -125,14 +126,16 @@ def faults(row):
     if row[f"reference{small}"] >= row["eevee"]:
         yield f"REFERENCE {small}x{small} errs by {row[f'reference{small}']:.4f}, EEVEE only by {row['eevee']:.4f}"
     if row["eevee_seconds"] < MIN_SPEED_RATIO * row[f"seconds{small}"]:
-        yield f"REFERENCE {small}x{small} is only {row['eevee_seconds'] / row[f'seconds{small}']:.1f} times as fast as EEVEE"
+        ratio = row["eevee_seconds"] / row[f"seconds{small}"]
+        yield f"REFERENCE {small}x{small} is only {ratio:.1f} times as fast as EEVEE"
 
 
 def parse():
     parser = argparse.ArgumentParser(prog="run.sh", description=(
-        "Renders small scenes with Cycles (cached in the build folder, minutes per scene the first time), EEVEE and Penumbra's "
-        "REFERENCE, and prints the RMSE of their visibility against Cycles, and times. Fails if a threshold is missed. "
-        "NAME.png in the output folder shows Cycles and REFERENCE above the errors of EEVEE and REFERENCE, white at 0.1."))
+        "Renders small scenes with Cycles (cached in the build folder, minutes per scene the first time), EEVEE and "
+        "Penumbra's REFERENCE, and prints the RMSE of their visibility against Cycles, and times. Fails if a threshold "
+        "is missed. NAME.png in the output folder shows Cycles and REFERENCE above the errors of EEVEE and REFERENCE, "
+        "white at 0.1."))
     parser.add_argument("--cycles-samples", type=int, default=1024, metavar="N")
     parser.add_argument("--scenes", nargs="+", default=[], metavar="NAME", help="default: all")
     parser.add_argument("--cycles-only", action="store_true", help="only fill the cache")
@@ -159,18 +162,22 @@ def main():
             truth(out, cache, scene, options.cycles_samples)
         return 0
     small, large = LIGHT_SAMPLES
-    print(f"RMSE of visibility against Cycles ({options.cycles_samples} samples); EEVEE with {EEVEE_SAMPLES} samples; REFERENCE N x N")
-    print(f"{'scene':16}{'counted':>8}{f'REF {small}':>9}{f'REF {large}':>9}{'EEVEE':>9}{f'REF {small} s':>10}{f'REF {large} s':>10}{'EEVEE s':>9}{'ratio':>8}")
+    print(f"RMSE of visibility against Cycles ({options.cycles_samples} samples); EEVEE with {EEVEE_SAMPLES} samples; "
+          "REFERENCE N x N")
+    print(f"{'scene':16}{'counted':>8}{f'REF {small}':>9}{f'REF {large}':>9}{'EEVEE':>9}"
+          f"{f'REF {small} s':>10}{f'REF {large} s':>10}{'EEVEE s':>9}{'ratio':>8}")
     failed = []
     for scene in scenes:
         row = measure(out, cache, scene, options)
-        print(f"{scene:16}{100 * row['share']:7.1f}%{row[f'reference{small}']:9.4f}{row[f'reference{large}']:9.4f}{row['eevee']:9.4f}"
+        print(f"{scene:16}{100 * row['share']:7.1f}%"
+              f"{row[f'reference{small}']:9.4f}{row[f'reference{large}']:9.4f}{row['eevee']:9.4f}"
               f"{row[f'seconds{small}']:10.3f}{row[f'seconds{large}']:10.3f}{row['eevee_seconds']:9.2f}"
               f"{row['eevee_seconds'] / row[f'seconds{small}']:8.1f}", flush=True)
         failed += [f"{scene}: {fault}" for fault in faults(row)]
     for line in failed:
         print(f"FAILED {line}")
-    print(f"{len({line.split(':')[0] for line in failed})} of {len(scenes)} scenes failed; images: {os.path.relpath(out)}")
+    count = len({line.split(":")[0] for line in failed})
+    print(f"{count} of {len(scenes)} scenes failed; images: {os.path.relpath(out)}")
     return 1 if failed else 0
 
 

@@ -121,7 +121,8 @@ def area_disk():
     corner()
     suzanne((-0.2, 0.1, 0.85), (0, 0, 15), 0.75)
     for k in range(7):
-        place("Cone", s.lathe_mesh("cone", [(0, 0), (0.16, 0), (0, 0.7)], white(), 48), transform((-1.9 + 0.62 * k, 1.1 - 0.2 * (k % 3), 0)))
+        cone = s.lathe_mesh("cone", [(0, 0), (0.16, 0), (0, 0.7)], white(), 48)
+        place("Cone", cone, transform((-1.9 + 0.62 * k, 1.1 - 0.2 * (k % 3), 0)))
     s.area_light("Light", s.aim((1.9, -1.9, 2.9), (-0.2, 0.3, 0.4)), 250, 0.8, "DISK")
     s.camera((-0.4, -5.0, 2.2), (0.0, 0.3, 0.7), 40)
 
@@ -217,11 +218,11 @@ def key():
     for item in bpy.context.scene.objects:
         data, parts = item.data, [tuple(round(x, 6) for row in item.matrix_world for x in row)]
         if item.type == "MESH":
-            parts += [tuple(round(x, 6) for v in data.vertices for x in v.co), [tuple(p.vertices) for p in data.polygons],
-                      [p.use_smooth for p in data.polygons]]
+            parts += [tuple(round(x, 6) for v in data.vertices for x in v.co),
+                      [tuple(p.vertices) for p in data.polygons], [p.use_smooth for p in data.polygons]]
         else:
-            wanted = ("type", "energy", "shape", "size", "size_y", "shadow_soft_size", "spot_size", "spot_blend", "angle", "lens",
-                      "ortho_scale", "shift_x", "shift_y")
+            wanted = ("type", "energy", "shape", "size", "size_y", "shadow_soft_size", "spot_size", "spot_blend",
+                      "angle", "lens", "ortho_scale", "shift_x", "shift_y")
             parts += [(name, getattr(data, name)) for name in wanted if hasattr(data, name)]
         digest.update(repr(parts).encode())
     return digest.hexdigest()[:16]
