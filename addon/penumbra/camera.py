@@ -17,7 +17,8 @@ def fill_camera(target, ob, matrix, shift_x, width, height, aspect, warnings):
     target.matrix[:] = column_major(matrix)
     orthographic = camera.type == 'ORTHO'
     if camera.type not in {'ORTHO', 'PERSP'}:
-        warnings.append(f"camera '{name_of(ob)}': {camera.type.lower()} is not supported, it is rendered in perspective")
+        warnings.append(
+            f"camera '{name_of(ob)}': {camera.type.lower()} is not supported, it is rendered in perspective")
     target.projection = capi.ORTHOGRAPHIC if orthographic else capi.PERSPECTIVE
     target.window[:] = _window(camera, orthographic, shift_x, width, height * aspect)
     target.clip_start = camera.clip_start

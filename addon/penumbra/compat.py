@@ -16,7 +16,8 @@ AREA_RADIANCE_PER_POWER = 1.0 / pi if BLENDER_4 else 1.0 / 4.0
 SPOT_IS_FLAT_DISK = not BLENDER_4
 SPOT_IS_SCALED = BLENDER_4
 # The axes that a light needs: Cycles takes one whose scale is 0 for dark.
-AXES_THAT_LIGHT = {'POINT': (), 'SUN': (2,), 'SPOT': (0, 1, 2) if BLENDER_4 else (2,), 'AREA': (0, 1, 2) if BLENDER_4 else (0, 1)}
+AXES_THAT_LIGHT = {'POINT': (), 'SUN': (2,),
+                   'SPOT': (0, 1, 2) if BLENDER_4 else (2,), 'AREA': (0, 1, 2) if BLENDER_4 else (0, 1)}
 # Before 4.0 Cycles takes a sun for a flat disk at distance 1, whose rim gives less than its centre.
 SUN_IS_FLAT_DISK = not BLENDER_4
 
@@ -72,7 +73,8 @@ def mesh_arrays(mesh, uv_map=''):
         yield MeshArray('corner_normals', 'f', 3, mesh.corner_normals, 'vector', mesh.corner_normals)
     else:
         yield MeshArray('corner_normals', 'f', 3, mesh.loops, 'normal', None)
-    layer = mesh.uv_layers.get(uv_map) if uv_map else next((each for each in mesh.uv_layers if each.active_render), None)
+    layers = mesh.uv_layers
+    layer = layers.get(uv_map) if uv_map else next((each for each in layers if each.active_render), None)
     if layer and hasattr(layer, 'uv'):
         yield MeshArray('corner_uvs', 'f', 2, layer.uv, 'vector', layer.uv)
     elif layer:

@@ -73,7 +73,8 @@ void main() {
 
 def make_shadow_texture(width, height, pixels, channels=3):
     """Texture of RGB floats: three texels of one channel per pixel, since there is no texture of three. Or of one."""
-    return gpu.types.GPUTexture((channels * width, height), format='R32F', data=gpu.types.Buffer('FLOAT', len(pixels), pixels))
+    data = gpu.types.Buffer('FLOAT', len(pixels), pixels)
+    return gpu.types.GPUTexture((channels * width, height), format='R32F', data=data)
 
 
 def draw_shadow(texture, size, place, mode, color=(0.0, 0.0, 0.0, 1.0)):

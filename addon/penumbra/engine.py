@@ -134,7 +134,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
         return done
 
     def _pose(self, camera):
-        """(matrix, shift in x), those of the eye in stereo. Of what is no camera, Blender would read memory at random."""
+        """(matrix, shift in x), those of the eye in stereo. Of what is no camera Blender would read random memory."""
         if camera.type != 'CAMERA':
             return camera.matrix_world.normalized(), 0.0
         return self.camera_model_matrix(camera), self.camera_shift_x(camera)

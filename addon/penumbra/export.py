@@ -226,7 +226,8 @@ class SceneExport:
     def _set_arrays(self):
         scene = self.scene
         for light in self._lights[capi.MAX_LIGHTS:]:
-            self.warnings.append(f"light '{light.name.decode()}': it is left out, there are more than {capi.MAX_LIGHTS}")
+            self.warnings.append(
+                f"light '{light.name.decode()}': it is left out, there are more than {capi.MAX_LIGHTS}")
         del self._lights[capi.MAX_LIGHTS:]
         scene.instances = self._instances
         scene.materials = (capi.Material * len(self._material_list))(*self._material_list)

@@ -81,7 +81,7 @@ def changed_data(depsgraph):
 
 
 class Kept:
-    """Meshes and textures kept from one export of a viewport to the next while Blender says that they did not change."""
+    """Meshes and textures kept from one export of a viewport to the next while Blender says that they are unchanged."""
 
     def __init__(self):
         self.textures = textures.TextureCache(watches=True)

@@ -3,7 +3,7 @@
 
 
 def name_of(block, attribute='name'):
-    r"""Files of old Blenders may hold names that are not UTF-8, at which RNA raises: the bytes in question come as \xNN."""
+    r"""Files of old Blenders may hold names that are not UTF-8, at which RNA raises: those bytes come as \xNN."""
     try:
         return getattr(block, attribute)
     except UnicodeDecodeError as error:
@@ -11,6 +11,6 @@ def name_of(block, attribute='name'):
 
 
 def one_line(text):
-    """For a report: names may have line breaks, and paths bytes that are no text. The library writes its messages so, too."""
+    """For a report: names may have line breaks, and paths bytes that are no text. The library's messages do so, too."""
     text = ''.join(' ' if character < ' ' or character == '\x7f' else character for character in text)
     return text.encode(errors='backslashreplace').decode()

@@ -14,7 +14,7 @@ _ENDS = {b'\x89PNG': b'IEND\xaeB`\x82', b'\xff\xd8\xff': b'\xff\xd9'}
 failures = []       # messages; with one, a Blender without a window ends with status 1
 _started = [0.0]    # when the render of the last frame began
 _has_failed = [False]   # whether a frame of the render could not be made
-_movie = []         # where a movie may lie whose render has not ended; Blender does not say so when it could not begin one
+_movie = []         # where a movie may lie whose render has not ended; Blender does not say when it could not begin one
 
 
 def find_fault(path):
@@ -110,8 +110,8 @@ def _check(paths):
 
 @bpy.app.handlers.persistent
 def clean_up(scene, *_arguments):
-    """Handler of `render_cancel`: after failures that Blender noticed itself a part of a picture may lie there, and the part
-    of a movie before a frame that failed. Who sees the error in the window may want that."""
+    """Handler of `render_cancel`: after failures that Blender noticed itself a part of a picture may lie there, and the
+    part of a movie before a frame that failed. Who sees the error in the window may want that."""
     _movie.clear()
     if not scene.render.is_movie_format:
         for _path, _fault in _remove_faulty(_candidates(scene)):

@@ -36,8 +36,8 @@ def list_passes(view_layer):
 
 
 def _light_names(objects):
-    """Of lights among the objects and in collections that they instance. Each instance of a light has a pass of its own,
-    whose name the library numbers."""
+    """Of lights among the objects and in collections that they instance. Each instance of a light has a pass of its
+    own, whose name the library numbers."""
     counts = {}
     for ob in _lights(objects, ()):
         name = name_of(ob)

@@ -125,7 +125,8 @@ def _scene_class(table, technique_classes):
                 ('SHADOW', "Shadow", "How much of the light arrives", 1),
                 ('LIGHT', "Shadow of One Light", "How much of one light arrives", 2),
                 ('CLASSES', "Lit, Penumbra, Umbra", "Yellow: lit; red: penumbra; blue: umbra", 3),
-                ('PENUMBRA', "Penumbra Width", "How wide one light's penumbra is, from dark to bright; black: no blocker", 4),
+                ('PENUMBRA', "Penumbra Width", "How wide one light's penumbra is, from dark to bright; "
+                                               "black: no blocker", 4),
                 ('BLOCKER', "Average Blocker", "How far one light's average blocker is from it, from dark to bright; "
                                                "black: no blocker", 5),
                 ('MAP', "Shadow Map", "What one light sees: near is dark, far is bright", 6)]),

@@ -35,7 +35,7 @@ def map_size(size, share):
 
 
 def for_viewport(scene, width, height, crop, samples, is_reference, image, share, is_quick):
-    """`image`: the one pass wanted; `share`: of the size of shadow maps; `is_quick`: with what the last quick one left."""
+    """`image`: the one pass wanted; `share`: of the size of shadow maps; `is_quick`: using what the last left."""
     settings = _common(scene, 'REFERENCE' if is_reference else None, width, height)
     settings.samples = samples
     settings.shadow_map_size = map_size(settings.shadow_map_size, share)
@@ -65,8 +65,9 @@ def _common(scene, technique, width, height):
     options = scene.penumbra
     values = _values(options, technique)
     settings = capi.Settings(
-        technique=props.technique(options, technique)[0].id, width=width, height=height, filter_width=scene.render.filter_size,
-        shadow_map_size=options.shadow_map_size, light_samples=options.light_samples,
+        technique=props.technique(options, technique)[0].id, width=width, height=height,
+        filter_width=scene.render.filter_size, shadow_map_size=options.shadow_map_size,
+        light_samples=options.light_samples,
         flags=capi.SETTINGS_FILM_TRANSPARENT if scene.render.film_transparent else 0)
     settings.values = (capi.Value * len(values))(*[capi.Value(name.encode(), value) for name, value in values])
     settings.value_count = len(values)

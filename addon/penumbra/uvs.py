@@ -30,7 +30,8 @@ def _mapping(source, warn):
                                  (('Location', 0.0), ('Rotation', 0.0), ('Scale', 1.0)))
     turn = Euler(rotation).to_matrix().to_4x4()
     if node.vector_type == 'TEXTURE':
-        return _scaled([1.0 / value if value else 0.0 for value in scale]) @ turn.inverted() @ Matrix.Translation(-location)
+        unscaled = _scaled([1.0 / value if value else 0.0 for value in scale])
+        return unscaled @ turn.inverted() @ Matrix.Translation(-location)
     if node.vector_type == 'VECTOR':
         return turn @ _scaled(scale)
     if node.vector_type == 'NORMAL':
