@@ -11,7 +11,8 @@ layout(rg32ui, binding = 0) coherent uniform uimage2DArray table;
 #else
 layout(r32ui, binding = 0) coherent uniform uimage2DArray table;
 #endif
-uniform int side;      // texels of the table
+uniform int side;      // texels of the level
+uniform ivec2 origin;  // of the level
 uniform int tile;      // texels along a tile's side, a power of two
 uniform float scale;
 
@@ -73,7 +74,7 @@ void main() {
         int index = block_index(thread, y);
         sum += to_value(uvec2(block[index], block[index + CHANNELS - 1]));
         if (all(lessThan(texel, ivec2(side))))
-            imageStore(table, ivec3(texel, layer), to_bits(sum));
+            imageStore(table, ivec3(origin + texel, layer), to_bits(sum));
     }
 }
 #else
@@ -87,9 +88,9 @@ void main() {
     for (int i = 64; i < side; i++) {
         if ((i & 63) == 0) {
             ivec2 before = STEP == 1 ? ivec2(i - 1, line) : ivec2(line, i - 1);
-            carry = (i & (tile - 1)) == 0 ? VALUE(0) : to_value(imageLoad(table, ivec3(before, layer)).xy);
+            carry = (i & (tile - 1)) == 0 ? VALUE(0) : to_value(imageLoad(table, ivec3(origin + before, layer)).xy);
         }
-        ivec3 texel = ivec3(STEP == 1 ? ivec2(i, line) : ivec2(line, i), layer);
+        ivec3 texel = ivec3(origin + (STEP == 1 ? ivec2(i, line) : ivec2(line, i)), layer);
         imageStore(table, texel, to_bits(to_value(imageLoad(table, texel).xy) + carry));
     }
 }

@@ -100,17 +100,17 @@ float plane_factor(receiver r, int level, ivec2 tile_index, vec2 low, vec2 high,
 // Adds one tile's part of a rectangle, both in texels of the level.
 void add_tile(receiver r, int level, ivec2 tile_index, vec2 low, vec2 high, bool blockers, inout basis_mean sum) {
     float unit = 1.0 / float((1 << p_bits) - 1), texel = float(1 << level);
-    ivec2 corner = tile_index << tile_log;
+    ivec2 corner = tile_index << tile_log, origin = table_origin(level, textureSize(prefiltered_0, 0).x);
     float area = (high.x - low.x) * (high.y - low.y), factor = exp(p_c - exponent(r.limit));
     vec3 esm = vec3(0.0);
     if (blockers) { // to whole texels, as the paper allows for the search
         ivec2 first = ivec2(low), last = max(ivec2(ceil(high)), first + 1);
         vec2 share = vec2(1.0 / float((last.x - first.x) * (last.y - first.y)));
-        esm.x = float(table_sum_whole(prefiltered_0, r.layer, level, corner, first, last).x) * share.x;
-        esm.yz = vec2(table_sum_whole(prefiltered_1, r.layer, level, corner, first, last)) * share;
+        esm.x = float(table_sum_whole(prefiltered_0, r.layer, origin, corner, first, last).x) * share.x;
+        esm.yz = vec2(table_sum_whole(prefiltered_1, r.layer, origin, corner, first, last)) * share;
         esm *= unit * area;
     } else
-        esm.x = unit * table_sum(prefiltered_0, r.layer, level, corner, 1 << tile_log, low, high, 0, false);
+        esm.x = unit * table_sum(prefiltered_0, r.layer, origin, corner, 1 << tile_log, low, high, false);
     bool behind = false;
     if (MODE == ROBUST)
         factor = plane_factor(r, level, tile_index, low * texel, high * texel, behind, sum.failed);
@@ -122,10 +122,10 @@ void add_tile(receiver r, int level, ivec2 tile_index, vec2 low, vec2 high, bool
     sum.t += behind ? t : esm.z;
 }
 
-// Level whose tables hold a kernel in 2 x 2 tiles at most.
+// Level whose tables hold a kernel in 2 x 2 tiles at most. AS_PUBLISHED has one level.
 int level_of(vec2 size) {
     float tiles = max(size.x, size.y) / float(1 << tile_log);
-    return clamp(int(ceil(log2(max(tiles, 1e-6)))), 0, textureQueryLevels(prefiltered_0) - 1);
+    return MODE == ROBUST ? clamp(int(ceil(log2(max(tiles, 1e-6)))), 0, textureQueryLevels(tile_planes) - 1) : 0;
 }
 
 // Nothing blocks outside the map: it counts as if it were as far as the receiver.
@@ -201,15 +201,14 @@ float search_weight(receiver r, rectangle rect, float depth) {
 // of its parts keep far texels apart from near ones.
 bool find_blockers(receiver r, rectangle kernel, float nearest, out float depth) {
     const int count = p_subdivision * p_subdivision;
-    bool sample_all = must_sample(r, nearest);
     int level = level_of(kernel.high - kernel.low);
-    int failed = 0; // a bit for each part
+    int failed = must_sample(r, nearest) ? (1 << count) - 1 : 0; // a bit for each part
     vec2 sum = vec2(0.0);
-    for (int i = 0; i < count; i++) {
+    for (int i = failed == 0 ? 0 : count; i < count; i++) {
         rectangle rect = part(kernel, i);
         basis_mean mean = mean_over(r, level, rect, true);
         vec2 blockers = esm_blockers(r, mean, nearest);
-        if (sample_all || mean.failed)
+        if (mean.failed)
             failed |= 1 << i;
         else if (blockers.x > 0.0)
             sum += search_weight(r, rect, blockers.y) * blockers.x * vec2(blockers.y, 1.0);
@@ -244,16 +243,16 @@ bool counts_own_kernels(receiver r) {
 
 // Share of the light that a part of a kernel hides by samples, over that of one it fills.
 float hidden_by_samples(receiver r, rectangle rect) {
-    if (!counts_own_kernels(r))
-        return sampled(r, rect).x;
+    bool by_own = counts_own_kernels(r);
     float sum = 0.0;
     for (int i = 0; i < 4; i++) {
         vec2 at = mix(rect.low, rect.high, sample_points[i]);
         float depth;
         bool blocked = blocker_at(r, at, depth);
         vec2 own = own_kernel(r, depth), weight = max(filter_half_size / own, 1.0);
-        if (blocked && all(lessThanEqual(abs(at - r.center), own)))
-            sum += weight.x * weight.y;
+        bool reaches = all(lessThanEqual(abs(at - r.center), own));
+        if (blocked && (reaches || !by_own))
+            sum += by_own ? weight.x * weight.y : 1.0;
     }
     return 0.25 * sum;
 }
@@ -355,7 +354,7 @@ void add_side(receiver r, float nearest, ellipse e, vec2 low, vec2 high, inout v
 float filter_slabs(receiver r, float scale) {
     ellipse e = filter_ellipse(r, scale);
     float width = sqrt(e.half_width * e.half_width + e.shear * e.shear * e.half_height * e.half_height);
-    int level = MODE == ROBUST ? level_of(2.0 * vec2(width, e.half_height)) : 0;
+    int level = level_of(2.0 * vec2(width, e.half_height));
     mat2 pixel = receiver_footprint(r) * 0.5;
     filter_pixel = sqrt(pixel[0] * pixel[0] + pixel[1] * pixel[1]);
     filter_half_size = vec2(width, e.half_height);

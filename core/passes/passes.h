@@ -135,9 +135,11 @@ struct summed_area {
     void (*bind)(struct frame *frame, GLuint program, const void *user);
     const void *user;
 };
-/* Format of a table: 32-bit integers, or with `floats` the bits of floats. */
-GLenum summed_area_format(int channels);
-/* summed_area.c: values -> one level of table, summed_area_format, a layer per view. */
+/* Makes room for a table and its levels, of half the side each, all in level 0 of the texture: table_origin in
+ * common_summed_area.glsl. side: of the table itself. */
+pnb_result summed_area_ensure(const struct gl *gl, struct gl_texture *table, int channels, int side, int layers,
+                              int levels);
+/* summed_area.c: values -> one level of table, a layer per view. */
 pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums, const struct gl_texture *table,
                             int level);
 /* planes.c: light->shadow_map -> light->planes, RGBA32F, a texel per 4 x 4 texels with all levels: see

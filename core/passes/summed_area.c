@@ -15,16 +15,24 @@ static pnb_result use_step(struct frame *frame, const struct summed_area *sums, 
     return program_use(&frame->renderer->programs, &desc, program);
 }
 
-GLenum summed_area_format(int channels) {
-    return channels == 2 ? GL_RG32UI : GL_R32UI;
+/* 32-bit integers, or the bits of floats. */
+pnb_result summed_area_ensure(const struct gl *gl, struct gl_texture *table, int channels, int side, int layers,
+                              int levels) {
+    return gl_texture_ensure(gl, table, channels == 2 ? GL_RG32UI : GL_R32UI, side, levels > 1 ? side + side / 2 : side,
+                             layers, 1);
+}
+
+static void set_level(const struct gl *gl, GLuint program, int side, int level) {
+    const GLint origin[2] = {level > 0 ? side - (side >> (level - 1)) : 0, level > 0 ? side : 0};
+    program_set_int(gl, program, "side", side >> level);
+    gl->Uniform2iv(gl->GetUniformLocation(program, "origin"), 1, origin);
 }
 
 pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums, const struct gl_texture *table,
                             int level) {
     struct renderer *renderer = frame->renderer;
     const struct gl *gl = renderer->gl;
-    const int side = table->width >> level;
-    const GLuint blocks = (GLuint)(side + BLOCK - 1) / BLOCK;
+    const GLuint blocks = (GLuint)((table->width >> level) + BLOCK - 1) / BLOCK;
     pnb_result result = pass_begin(frame, "Summed-area table");
     if (result != PNB_OK)
         return result;
@@ -35,12 +43,12 @@ pnb_result pass_summed_area(struct frame *frame, const struct summed_area *sums,
         result = use_step(frame, sums, step, &program);
         if (result != PNB_OK)
             break;
-        program_set_int(gl, program, "side", side);
+        set_level(gl, program, table->width, level);
         program_set_int(gl, program, "tile", sums->tile);
         program_set_float(gl, program, "scale", sums->scale);
         if (step == 0)
             sums->bind(frame, program, sums->user);
-        gl->BindImageTexture(0, table->id, level, GL_TRUE, 0, GL_READ_WRITE, table->format);
+        gl->BindImageTexture(0, table->id, 0, GL_TRUE, 0, GL_READ_WRITE, table->format);
         gl->DispatchCompute(blocks, step == 0 ? blocks : 1, (GLuint)table->layers);
         gl->MemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
     }

@@ -240,8 +240,7 @@ static pnb_result make_tables(struct frame *frame, struct essm *essm, int channe
     const int side = essm->light->shadow_map.width;
     /* Rounded up, so that no level loses a row. */
     const int padded = (side + (1 << (levels - 1)) - 1) >> (levels - 1) << (levels - 1);
-    pnb_result result = gl_texture_ensure(frame->gl, table, summed_area_format(channels), padded, padded,
-                                          essm->light->shadow_map.layers, levels);
+    pnb_result result = summed_area_ensure(frame->gl, table, channels, padded, essm->light->shadow_map.layers, levels);
     const struct summed_area sums = {.channels = channels,
                                      .tile = essm->light->prefiltered_tile,
                                      .scale = ldexpf(1.0f, (int)essm->light->parameters[BITS]) - 1.0f,
@@ -304,5 +303,5 @@ const struct technique technique_essm = {
     .prefilter = essm_prefilter,
     .defines = essm_defines,
     .bind = essm_bind,
-    .prefilter_bytes = 22, /* 4 + 8 with levels, and AS_PUBLISHED the pyramid while they are made */
+    .prefilter_bytes = 19, /* 4 + 8 with levels and planes; AS_PUBLISHED without, and the pyramid while they are made */
 };

@@ -123,7 +123,7 @@ static bool table_make(struct bench *bench, struct table_case *c) {
     CHECK_RESULT(gl_texture_ensure(gl, &c->map, format, c->side, c->side, 1, 1), PNB_OK);
     upload_texture(bench, &c->map, c->with_nan ? GL_RED : GL_DEPTH_COMPONENT, c->depths);
     CHECK_RESULT(gl_texture_ensure(gl, &c->min_max, GL_RG32F, 1, 1, 1, 1), PNB_OK);
-    if (!CHECK_RESULT(gl_texture_ensure(gl, &c->table, summed_area_format(2), c->side, c->side, 1, 1), PNB_OK))
+    if (!CHECK_RESULT(summed_area_ensure(gl, &c->table, 2, c->side, 1, 1), PNB_OK))
         return false;
     const struct summed_area sums = {.channels = 2,
                                      .tile = c->tile,
@@ -182,8 +182,8 @@ static const char lookup_shader[] =
     "    for (int y = first.y; y <= last.y; y++)\n"
     "        for (int x = first.x; x <= last.x; x++) {\n"
     "            vec2 corner = vec2(x, y) * float(tile);\n"
-    "            sum += table_sum(table, 0, 0, ivec2(x, y) * tile, tile, max(low, corner), min(high, corner + "
-    "float(tile)), 1,\n"
+    "            sum += table_sum(table, 0, ivec2(0), ivec2(x, y) * tile, tile, max(low, corner), min(high, corner + "
+    "float(tile)),\n"
     "                             floats == 1);\n"
     "        }\n"
     "    rectangles[gl_GlobalInvocationID.x].x = sum;\n"
@@ -193,7 +193,7 @@ static GLuint lookup_program(const struct gl *gl) {
     const struct shader_source *library = shader_sources;
     while (library->name && strcmp(library->name, "common_summed_area.glsl") != 0)
         library++;
-    const char *texts[] = {"#version 430 core\n", library->text, lookup_shader};
+    const char *texts[] = {"#version 430 core\n#define TABLE_CHANNEL 1\n", library->text, lookup_shader};
     const GLuint shader = gl->CreateShader(GL_COMPUTE_SHADER), program = gl->CreateProgram();
     gl->ShaderSource(shader, 3, texts, NULL);
     gl->CompileShader(shader);

@@ -59,7 +59,7 @@ static void compare_tables(struct bench *bench, int side) {
     CHECK_RESULT(gl_texture_ensure(gl, &source.map, GL_DEPTH_COMPONENT32F, side, side, 1, 1), PNB_OK);
     CHECK_RESULT(gl_texture_ensure(gl, &source.min_max, GL_RG32F, 1, 1, 1, 1), PNB_OK);
     for (int i = 0; i < 2; i++)
-        CHECK_RESULT(gl_texture_ensure(gl, &tables[i], summed_area_format(i + 1), side, side, 1, 1), PNB_OK);
+        CHECK_RESULT(summed_area_ensure(gl, &tables[i], i + 1, side, 1, 1), PNB_OK);
     const double whole = time_tables(bench, &source, tables, side), tiles = time_tables(bench, &source, tables, 64);
     printf("%4d x %4d: one table %7.1f ms, tiles of 64 %7.1f ms, ratio %.2f\n", side, side, whole, tiles,
            whole / tiles);
