@@ -128,13 +128,18 @@ static void contacts(void) {
 
 /* ---- Failure classification of ESM: the shape of the paper's Table 3 ---- */
 
+/* As show_failures paints it. */
+static bool fails(const struct render *shown, size_t pixel) {
+    return shown->shadow[3 * pixel] == 1 && shown->shadow[3 * pixel + 2] == 0;
+}
+
 static double failures(const pnb_scene *scene, pnb_settings settings, int classification, int convolution) {
     const struct choice choices[] = {
         {"classification", classification}, {"prefilter", convolution}, {"lookup", 0}, {"show_failures", 1}, {0}};
     struct render render = render_with(scene, settings, "ESM", choices);
     double count = 0;
     for (size_t i = 0; render.job && i < (size_t)render.width * render.height; i++)
-        count += render.shadow[3 * i] == 1 && render.shadow[3 * i + 2] == 0;
+        count += fails(&render, i);
     render_free(&render);
     return 100 * count / ((double)settings.width * settings.height);
 }
@@ -151,18 +156,45 @@ static void classification(const char *name) {
             printf(" %.2f", percent);
             CHECK(percent > last[kind - 1]);
             last[kind - 1] = percent;
-            if (kind == 2)
-                CHECK(percent <= failures(scene, settings, 1, convolution));
+            if (kind == 2) { /* in the paper's Table 3 0.76 to 0.93 of Z-Max */
+                const double all = failures(scene, settings, 1, convolution);
+                CHECK(percent <= all && percent >= 0.55 * all);
+            }
         }
+    test_scene_destroy(&test);
+}
+
+/* Of the pixels that fail those whose error against a point light's hard shadow is above 0.2, in %. */
+static double wrong_failures(const struct render *render, const struct render *truth, const struct render *shown) {
+    double wrong = 0, count = 0;
+    for (size_t i = 0; render->job && truth->job && shown->job && i < (size_t)render->width * render->height; i++) {
+        count += fails(shown, i);
+        wrong += fails(shown, i) && fabs((double)render->shadow[3 * i] - (double)truth->shadow[3 * i]) > 0.2;
+    }
+    return 100 * wrong / count;
+}
+
+/* What the fallback repairs. Elsewhere ESM differs from a hard shadow by its filter, which softens every edge: of all
+ * pixels those off by more than 0.2 hardly change. */
+static void fallback(const char *name) {
+    struct test_scene *test = quality_scene(name, TEST_LIGHT_RECTANGLE, 0.004f, NAN);
+    const pnb_scene *scene = test_scene_get(test);
+    pnb_settings settings = quality_scene_settings(NULL, test, 180);
     settings.light_samples = 1;
-    struct render truth = render_with(scene, settings, "REFERENCE", NULL);
-    const struct choice off[] = {{"fallback", 0}, {"contact", 0}, {0}}, on[] = {{"contact", 0}, {0}};
-    struct render before = render_with(scene, settings, "ESM", off), after = render_with(scene, settings, "ESM", on);
-    const double wrong = share_above(&before, &truth, 0.2), repaired = share_above(&after, &truth, 0.2);
-    printf("%s: error above 0.2 at %.2f %% of the pixels, with the fallback %.2f %%\n", name, wrong, repaired);
-    CHECK(repaired < wrong);
+    const struct choice off[] = {{"fallback", 0}, {"contact", 0}, {0}}, on[] = {{"contact", 0}, {0}},
+                        show[] = {{"show_failures", 1}, {0}};
+    struct render truth = render_with(scene, settings, "REFERENCE", NULL),
+                  shown = render_with(scene, settings, "ESM", show), before = render_with(scene, settings, "ESM", off),
+                  after = render_with(scene, settings, "ESM", on);
+    const double wrong = wrong_failures(&before, &truth, &shown), left = wrong_failures(&after, &truth, &shown);
+    printf(
+        "%s: error above 0.2 at %.1f %% of the failures, with the fallback %.1f %%; at %.2f %% of all pixels, with the "
+        "fallback %.2f %%\n",
+        name, wrong, left, share_above(&before, &truth, 0.2), share_above(&after, &truth, 0.2));
+    CHECK(left < wrong);
     render_free(&before);
     render_free(&after);
+    render_free(&shown);
     render_free(&truth);
     test_scene_destroy(&test);
 }
@@ -309,6 +341,8 @@ int main(int count, char **parts) {
     if (is_wanted(count, parts, "classification")) {
         classification("fence");
         classification("cubes");
+        fallback("fence");
+        fallback("cubes");
     }
     if (is_wanted(count, parts, "subdivision")) {
         subdivision("stairs", 288);
