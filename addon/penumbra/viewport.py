@@ -18,8 +18,8 @@ _POLL = 0.005
 # Seconds without input before more samples are worth starting.
 _REST = 0.12
 # So many milliseconds Blender's event loop may stand still while first pictures are waited for, by all viewports
-# together, and shown. Without a wait Blender would show the old picture once more, at the cost of the new one where the CPU draws
-# both, and show the new one in a second turn.
+# together, and shown. Without a wait Blender would show the old picture once more, at the cost of the new one where the
+# CPU draws both, and show the new one in a second turn.
 _BLOCK_MS = 200
 # The least that a picture is waited for.
 _LEAST_WAIT_MS = 100
