@@ -27,8 +27,8 @@ vec3 essm_normalize(vec4 basis) {
     return vec3((basis.x * factor - least) / (1.0 - least), basis.y * factor, basis.z);
 }
 
-// A plane's map depth is linear in map coordinates in an orthographic view; in perspective the inverse of its light-space
-// depth is. These convert between map depth and what is linear.
+// A plane's map depth is linear in map coordinates in an orthographic view; in perspective the inverse of its
+// light-space depth is. These convert between map depth and what is linear.
 float depth_to_linear(float depth, int layer) {
     float k = near_ratio[layer >> 2][layer & 3];
     return k > 0.0 ? 1.0 / (depth + k) : depth;

@@ -5,8 +5,8 @@ uniform sampler2DArray shadow_map, min_max;
 
 uniform int level, p_mode;
 
-// Relative to the plane of the tile. A texel of a coarse level takes the middle one of its texels of the map: kernels that
-// are read from there cover a thousand of them and more.
+// Relative to the plane of the tile. A texel of a coarse level takes the middle one of its texels of the map: kernels
+// that are read from there cover a thousand of them and more.
 vec3 robust_value(ivec3 texel) {
     ivec2 tile = texel.xy >> tile_log, at = (texel.xy << level) + (1 << level) / 2;
     vec2 center = (vec2(tile) + 0.5) * float(1 << (tile_log + level));

@@ -57,7 +57,9 @@ vec2 filter_extent(ellipse e) {
     float convolved = float(p_prefilter);
     if (p_lookup == LOOKUP_BILINEAR)
         return vec2(convolved + 0.5);
-    return p_lookup == LOOKUP_MIP ? vec2(convolved + 0.5 + 0.5 * e.longer) : convolved + 0.5 + abs(e.major) + 0.5 * e.minor;
+    if (p_lookup == LOOKUP_MIP)
+        return vec2(convolved + 0.5 + 0.5 * e.longer);
+    return convolved + 0.5 + abs(e.major) + 0.5 * e.minor;
 }
 
 // Exponent's growth from texel to texel, on the receiver's tangent plane.
@@ -67,8 +69,8 @@ vec2 exponent_slope(receiver r) {
     return p_c * change / ((1.0 - exponential_start(r.layer)) * r.depth_span);
 }
 
-// What convolution and linear interpolation make of the receiver's own plane. The exponential is convex, so that a slope
-// comes out brighter than 1. Divided by this, slopes neither fail nor wash out. Levels add a little more.
+// What convolution and linear interpolation make of the receiver's own plane. The exponential is convex, so that a
+// slope comes out brighter than 1. Divided by this, slopes neither fail nor wash out. Levels add a little more.
 float lit_value(receiver r, vec2 slope) {
     vec2 f = fract(r.center - 0.5);
     slope = clamp(slope, vec2(-1.0), vec2(1.0));

@@ -2,11 +2,12 @@
 // Exponential soft shadow mapping (Shen, Feng, Yang 2013): PCSS whose averages over rectangles come from summed-area
 // tables. Depths t as in common_exponential.glsl; map coordinates in texels of the shadow map.
 //
-// ROBUST differs from the paper where that cannot work. The paper's tables hold e^(c t) over the whole depth range in 20
-// bits, which is 0 for everything nearer than about 0.83: lit surfaces turn black. Here every tile refers to a plane of
-// its own, the one most of it lies in. A receiver in that plane is resolved however steep the plane is; where a receiver
-// lies elsewhere, its part of the kernel is split and then sampled. Besides, ROBUST tests against the receiver's tangent
-// plane, and reads wide kernels from tables of a coarser level, so that no kernel touches more than 2 x 2 tiles.
+// ROBUST differs from the paper where that cannot work. The paper's tables hold e^(c t) over the whole depth range in
+// 20 bits, which is 0 for everything nearer than about 0.83: lit surfaces turn black. Here every tile refers to a plane
+// of its own, the one most of it lies in. A receiver in that plane is resolved however steep the plane is; where a
+// receiver lies elsewhere, its part of the kernel is split and then sampled. Besides, ROBUST tests against the
+// receiver's tangent plane, and reads wide kernels from tables of a coarser level, so that no kernel touches more than
+// 2 x 2 tiles.
 #include "common_footprint.glsl"
 #include "common_min_max.glsl"
 #include "common_summed_area.glsl"
@@ -34,15 +35,15 @@ float exponent(float depth) {
     return depth * exponent_scale + exponent_offset;
 }
 
-// ROBUST: whether every part of the kernel must be sampled, because the nearest caster may be so close before the receiver
-// that the exponential has not fallen to 5 %, or because the surface is turned away from the middle of the light.
+// ROBUST: whether every part of the kernel must be sampled, because the nearest caster may be so close before the
+// receiver that the exponential has not fallen to 5 %, or because the surface is turned away from the light's middle.
 bool must_sample(receiver r, float nearest) {
     float facing = is_perspective() ? -dot(r.normal, r.position) : -r.normal.z;
     return MODE == ROBUST && (exponent_scale * (r.limit - nearest) < 3.0 || facing <= 0.0);
 }
 
-// Light-space depths of the receiver's tangent plane at four map coordinates. Without bias: a mean over a plane is no less
-// than its value in the middle, and bias alone would make the exponential exceed 1.
+// Light-space depths of the receiver's tangent plane at four map coordinates. Without bias: a mean over a plane is no
+// less than its value in the middle, and bias alone would make the exponential exceed 1.
 vec4 tangent_depths(receiver r, vec4 x, vec4 y) {
     vec4 height = r.slope.x * (x - 0.5) + r.slope.y * (y - 0.5) + r.level;
     float level = dot(r.normal, r.position);
@@ -78,20 +79,21 @@ struct basis_mean {
     bool failed;        // the tables cannot tell
 };
 
-// ROBUST: e^(c (p - d)) in the middle of a rectangle (texels of the map), for a tile's plane p and the receiver's plane d.
+// ROBUST: e^(c (p - d)) in the middle of a rectangle (texels of the map), for a tile's plane p and the receiver's d.
 // failed: the planes are too far apart for what the tile's values resolve. `behind`: nothing in the tile can block.
 float plane_factor(receiver r, int level, ivec2 tile_index, vec2 low, vec2 high, out bool behind, inout bool failed) {
     vec4 plane = texelFetch(tile_planes, ivec3(tile_index, r.layer), level);
     vec2 center = (vec2(tile_index) + 0.5) * float(1 << (tile_log + level));
     vec4 x = vec4(low.x, high.x, low.x, high.x), y = vec4(low.y, low.y, high.y, high.y);
     vec4 tangent = tangent_depths(r, x, y);
-    vec4 distance = exponent_scale * (plane_depths(r, plane, x - center.x, y - center.y) - tangent) + p_c * abs(plane.w);
+    vec4 apart = plane_depths(r, plane, x - center.x, y - center.y) - tangent;
+    vec4 distance = exponent_scale * apart + p_c * abs(plane.w);
     float least = least_of(distance), greatest = greatest_of(distance);
     int top = min(tile_log + level, textureQueryLevels(min_max)) - 1;
     float nearest = texelFetch(min_max, ivec3(tile_index, r.layer), top).r;
     behind = r.near_depth + r.depth_span * nearest > greatest_of(tangent);
-    // A receiver behind everything in the tile sees none of it, however far apart the planes; unless there are texels with
-    // nothing in them, whose value is 1 for all.
+    // A receiver behind everything in the tile sees none of it, however far apart the planes; unless there are texels
+    // with nothing in them, whose value is 1 for all.
     float lowest = plane.w < 0.0 ? -0.5 : -2.0 * p_c;
     failed = failed || (!behind && (greatest - least > 1.5 || greatest > 9.0 || least < lowest));
     return exp(clamp(0.5 * (least + greatest) + SLACK, -80.0, 80.0));
@@ -153,8 +155,8 @@ basis_mean mean_over(receiver r, int level, rectangle rect, bool blockers) {
 
 // ---- One kernel and its parts ----
 
-// Section 5.2: a kernel that cannot be trusted as a whole is split into n x n parts, and of those the ones that cannot be
-// trusted are sampled. AS_PUBLISHED always splits. Parts are numbered row by row; -1 is the whole.
+// Section 5.2: a kernel that cannot be trusted as a whole is split into n x n parts, and of those the ones that cannot
+// be trusted are sampled. AS_PUBLISHED always splits. Parts are numbered row by row; -1 is the whole.
 rectangle part(rectangle whole, int index) {
     vec2 size = (whole.high - whole.low) / float(p_subdivision);
     float row = floor((float(index) + 0.5) / float(p_subdivision)); // a division of integers is slow in software
@@ -178,8 +180,8 @@ vec2 sampled(receiver r, rectangle rect) {
     return vec2(0.25 * sum.x, sum.y / max(sum.x, 1.0));
 }
 
-// Blocked share and the blockers' mean light-space depth, by ESM-Z. Where little is blocked that is the quotient of small
-// differences; `nearest` is the light-space depth it cannot be before.
+// Blocked share and the blockers' mean light-space depth, by ESM-Z. Where little is blocked that is the quotient of
+// small differences; `nearest` is the light-space depth it cannot be before.
 vec2 esm_blockers(receiver r, basis_mean mean, float nearest) {
     float blocked = 1.0 - mean.visibility;
     float exponents = clamp(p_c * (mean.t - mean.t_visibility) / max(blocked, 1e-3), 0.0, exponent(r.limit));
@@ -228,15 +230,15 @@ const float BOX_SIDE = ELLIPSE == 1 && KERNEL == RECTANGLE ? 0.8660254 : 1.0;
 vec2 filter_half_size;         // half sides of the whole kernel, of which slabs are parts
 vec2 filter_pixel = vec2(0.0); // of the pixel's footprint in it
 
-// ROBUST: half sides of the kernel of what blocks at a depth. A kernel that must be split holds surfaces far apart, of which
-// one at its mean depth is a poor account: a step beside the receiver hides nothing beyond its own kernel, and more of the
-// light inside it than the mean kernel says.
+// ROBUST: half sides of the kernel of what blocks at a depth. A kernel that must be split holds surfaces far apart, of
+// which one at its mean depth is a poor account: a step beside the receiver hides nothing beyond its own kernel, and
+// more of the light inside it than the mean kernel says.
 vec2 own_kernel(receiver r, float depth) {
     vec2 soft = kernel_extent(r, kernel_scale(r, depth)) * BOX_SIDE;
     return sqrt(soft * soft + filter_pixel * filter_pixel) + 1.0;
 }
 
-// Not for kernels as wide as an eighth of the map: of those the few samples and the mean depths of parts say too little.
+// Not for kernels as wide as an eighth of the map: of those few samples and the mean depths of parts say too little.
 bool counts_own_kernels(receiver r) {
     return MODE == ROBUST && 16.0 * max(filter_half_size.x, filter_half_size.y) < float(r.map_size.x);
 }
@@ -263,7 +265,8 @@ float hidden_by_tables(receiver r, int level, rectangle rect, float visibility, 
     if (blockers.x <= 0.0)
         return 1.0 - visibility;
     vec2 own = own_kernel(r, blockers.y), size = rect.high - rect.low;
-    vec2 overlap = max(min(rect.high, r.center + own) - max(rect.low, r.center - own), 0.0) * max(filter_half_size / own, 1.0);
+    vec2 overlap = max(min(rect.high, r.center + own) - max(rect.low, r.center - own), 0.0);
+    overlap *= max(filter_half_size / own, 1.0);
     return (1.0 - visibility) * overlap.x * overlap.y / (size.x * size.y);
 }
 
