@@ -33,9 +33,9 @@ vec3 strip_sums(uvec4 above, uvec4 below, bool floats) {
     return vec3((above.yzw - above.xyz) - (below.yzw - below.xyz));
 }
 
-// Sum over low .. high, which must lie in one tile. On each axis the texels it touches are three
-// strips: the first texel, those between, and the last. Integers are subtracted before anything is weighted, so that sums
-// may have wrapped around.
+// Sum over low .. high, which must lie in one tile. On each axis the texels it touches are three strips: the first
+// texel, those between, and the last. Integers are subtracted before anything is weighted, so that sums may have
+// wrapped around.
 float table_sum(usampler2DArray table, int layer, ivec2 origin, ivec2 tile_corner, int side, vec2 low, vec2 high,
                 bool floats) {
     ivec2 first = ivec2(low), last = min(ivec2(high), tile_corner + side - 1);

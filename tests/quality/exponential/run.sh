@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # run.sh BUILD_DIR [errors|times|widths|tables...] [SCENE|CAPTURE.pnb...]: errors and times of ESM and ESSM beside
-# PCSS. Without parts all of them, without scenes those listed here; widths and tables have scenes of their own. Times need
-# a machine that does nothing else; a part takes half a minute to three minutes.
+# PCSS. Without parts all of them, without scenes those listed here; widths and tables have scenes of their own. Times
+# need a machine that does nothing else; a part takes half a minute to three minutes.
 set -eu
 build=$1
 shift
@@ -32,7 +32,8 @@ make_scene() { # scene or capture, options
 }
 
 truth() { # REFERENCE's points on each side of the light
-    "$build/penumbra" render "$files/scene.pnb" -s "$size" -t reference --light-samples "$1" -o "$files/truth.exr" >"$files/log"
+    "$build/penumbra" render "$files/scene.pnb" -s "$size" -t reference --light-samples "$1" \
+        -o "$files/truth.exr" >"$files/log"
 }
 
 rmse() { # options: error of the scene against its truth
@@ -43,8 +44,8 @@ rmse() { # options: error of the scene against its truth
 
 part_errors() {
     echo "RMSE against REFERENCE of 16 x 16: ESM, ESSM, PCSS 15 x 15, PCSS 32 x 32"
-    for scene in ${scenes:-half-plane ball hover slot discs slats perforated slanted-sheet plane sphere box fence stairs lantern \
-        tall-box cubes benchmark terraces grazing-fence all-lights}; do
+    for scene in ${scenes:-half-plane ball hover slot discs slats perforated slanted-sheet plane sphere box fence \
+        stairs lantern tall-box cubes benchmark terraces grazing-fence all-lights}; do
         make_scene "$scene"
         truth 16
         echo "$(basename "$scene" .pnb) $(rmse '-t esm') $(rmse '-t essm') $(rmse "$grid15") $(rmse "$grid32")" |
@@ -76,9 +77,9 @@ part_widths() {
     samples=4
     for width in 0.1 0.4 1.6; do
         make_scene box --light-size $width
+        pcss="-t pcss -p min_max=false -p blocker_samples=$samples -p filter_samples=$samples"
         echo "$width m $(visibility '-s 640x480 -t essm -p min_max=false')" \
-            "$(visibility "-s 640x480 -t pcss -p min_max=false -p blocker_samples=$samples -p filter_samples=$samples")" \
-            "($samples points)"
+            "$(visibility "-s 640x480 $pcss") ($samples points)"
         samples=$((samples * 16))
     done
 }
