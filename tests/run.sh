@@ -12,7 +12,7 @@ Installs what is missing, builds Penumbra into build/ and runs all tests. The la
   --fast         all but sanitizers
   --help
 
-Suites: checks      what the library exports, its header, its shaders
+Suites: checks      what the library exports, its header, its shaders, columns of sources
         library     test programs of the library: unit/, gl/, fault/, quality/
         tool        the command-line tool
         addon       the add-on inside Blender
@@ -75,6 +75,7 @@ suite_checks() {
     local status=0
     bash "$root/tests/check_binary.sh" "$build" || status=1
     bash "$root/tests/check_headers.sh" || status=1
+    bash "$root/tests/check_columns.sh" || status=1
     bash "$root/tests/check_shaders.sh" "$build" || status=1
     return "$status"
 }
