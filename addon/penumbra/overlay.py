@@ -111,9 +111,9 @@ def draw_popover(self, context):
     options = context.scene.penumbra
     column = self.layout.column()
     column.active = context.space_data.overlay.show_overlays
-    row = column.row(align=True)
-    row.prop(options, 'use_overlay')
-    sub = row.row(align=True)
+    split = column.split(factor=0.45)   # a row would cut the name off
+    split.prop(options, 'use_overlay')
+    sub = split.row(align=True)
     sub.active = options.use_overlay
     sub.prop(options, 'overlay_strength', text="")
     sub.prop(options, 'overlay_color', text="")

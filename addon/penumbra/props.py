@@ -91,7 +91,7 @@ def _light_class(table):
             name="Shadow Map Size", default=0, min=0, max=16384, subtype='PIXEL',
             description="Texels per side of this light's shadow maps, 16 or more. 0: as the scene's"),
         'shadow_color': FloatVectorProperty(
-            name="Shadow Colour", size=3, subtype='COLOR', min=0.0, max=1.0,
+            name="Shadow Color", size=3, subtype='COLOR', min=0.0, max=1.0,
             description="The share of this light that arrives in its full shadow. Black: none, as in nature"),
     }
     return type('PenumbraLightSettings', (PropertyGroup,), {'__annotations__': annotations})
@@ -137,7 +137,7 @@ def _scene_class(table, technique_classes):
         'overlay_strength': FloatProperty(
             name="Strength", default=1.0, min=0.0, max=1.0, subtype='FACTOR', description="1: as dark as they are"),
         'overlay_color': FloatVectorProperty(
-            name="Colour", size=3, subtype='COLOR', min=0.0, max=1.0, description="What a whole shadow looks like"),
+            name="Color", size=3, subtype='COLOR', min=0.0, max=1.0, description="What a whole shadow looks like"),
         'use_refine': BoolProperty(
             name="Refine", description="Let a viewport at rest go on to the reference, the ground truth"),
     }

@@ -226,6 +226,11 @@ class PENUMBRA_PT_object_visibility(_EnginePanel, Panel):
     bl_context = 'object'
     bl_parent_id = 'OBJECT_PT_visibility'
 
+    @classmethod
+    def poll(cls, context):
+        """Lights and cameras are not seen, and shadow nothing."""
+        return super().poll(context) and context.object.type not in {'LIGHT', 'CAMERA', 'LIGHT_PROBE', 'SPEAKER'}
+
     def draw(self, context):
         column = self._column()
         column.prop(context.object, 'visible_camera', text="Camera")

@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import unittest
+from types import SimpleNamespace
 
 import addon_utils
 import bpy
@@ -13,7 +14,7 @@ import bpy
 from harness import ADDON, output, run_blender
 
 import penumbra
-from penumbra import capi, props
+from penumbra import capi, props, ui
 
 HEADER_FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), '../../core/include')
 
@@ -79,6 +80,19 @@ class Properties(unittest.TestCase):
     def test_technique_is_stored_by_name(self):
         """The number in a .blend must not change when techniques are added: it is known here."""
         self.assertEqual(props.technique_number('PCSS'), 2108749567)
+
+
+class Panels(unittest.TestCase):
+    def test_ray_visibility(self):
+        """Of what rays can meet."""
+        for kind, wanted in (('MESH', True), ('CURVE', True), ('EMPTY', True), ('LIGHT', False), ('CAMERA', False)):
+            context = SimpleNamespace(engine='PENUMBRA', object=SimpleNamespace(type=kind))
+            self.assertEqual(ui.PENUMBRA_PT_object_visibility.poll(context), wanted, kind)
+
+    def test_words_are_blender_s(self):
+        for owner in (bpy.types.Scene, bpy.types.Light, bpy.types.Object):
+            for item in owner.bl_rna.properties['penumbra'].fixed_type.properties:
+                self.assertNotIn('Colour', item.name)
 
 
 class Layout(unittest.TestCase):
