@@ -22,7 +22,7 @@ class TextureCache:
     """Textures kept from export to export while their images are sure to have the same content."""
 
     def __init__(self, watches=False):
-        """`watches`: its owner asks it for changes between exports, instead of having young files read anew."""
+        """`watches`: its owner asks it for changes between exports; else the pixels of young files are compared."""
         self._kept = {}         # key: (state, handle, its lines of the report)
         self._used = set()      # keys, by the export that is made
         self._seen = {}         # key: _signature of the image at the last export
@@ -46,11 +46,10 @@ class TextureCache:
         return handle, not (state and handle)
 
     def _state(self, image, file):
-        """What the texture depends on, or None if that cannot be told without reading all pixels."""
-        if file or image.source == 'FILE' and not image.is_dirty:
-            content = _content(image, file, self._watches)
-        else:
-            content = images.checksum(image) if self._watches else None
+        """What the texture depends on, or None if the image is missing."""
+        is_file = file or image.source == 'FILE' and not image.is_dirty
+        content = _content(image, file, self._watches) if is_file else None
+        content = content or images.checksum(image)     # takes less than making the texture
         return content and (content, image.colorspace_settings.name, image.alpha_mode)
 
     def end_export(self):
@@ -109,7 +108,7 @@ def _content(image, file, watches):
         return image.packed_file.size, 0 if watches else zlib.crc32(image.packed_file.data)
     date = _date(images.path_of(image, file))
     is_young = date is not None and date[-1] > _start * 1e9
-    return None if is_young and not watches else date
+    return None if is_young and not file and not watches else date
 
 
 _EXTENSIONS = {'EXTEND': capi.TEXTURE_EXTEND, 'CLIP': capi.TEXTURE_CLIP, 'MIRROR': capi.TEXTURE_MIRROR}
