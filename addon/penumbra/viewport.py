@@ -22,7 +22,7 @@ _REST = 0.12
 # CPU draws both, and show the new one in a second turn.
 _BLOCK_MS = 200
 # The least that a picture is waited for.
-_LEAST_WAIT_MS = 100
+_LEAST_WAIT_MS = 150
 # Of the region's width and height, for the first picture.
 _SCALES = (1.0, 0.7, 0.5, 0.35, 0.25)
 # First pictures for which a scale that was too slow is not tried again.
