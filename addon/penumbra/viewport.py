@@ -28,7 +28,7 @@ _SCALES = (1.0, 0.7, 0.5, 0.35, 0.25)
 # First pictures for which a scale that was too slow is not tried again.
 _MEMORY = 40
 # First pictures that are not waited for after many waits that were too short; after the first it is one.
-_LONGEST_PAUSE = 16
+_LONGEST_PAUSE = 3
 # Of the user's latency, what is left for our part however long Blender takes to show a picture.
 _LEAST_SHARE = 0.5
 
