@@ -2,6 +2,7 @@
 """Whether a picture has arrived on the disk: Blender's writers overlook that it is full and leave a part of one."""
 
 import atexit
+import contextlib
 import os
 import tempfile
 import time
@@ -58,12 +59,32 @@ def _written(paths):
     return [path for path in paths if os.path.isfile(path) and os.path.getmtime(path) >= _started[0]]
 
 
+def _find_lasting_fault(path):
+    """As find_fault, of a file that does not change for a second: a Blender that shares the folder and took the same
+    frame may be writing it."""
+    while fault := find_fault(path):
+        before = _state(path)
+        time.sleep(1)
+        if _state(path) == before:
+            return fault
+    return None
+
+
+def _state(path):
+    try:
+        status = os.stat(path)
+    except OSError:
+        return None
+    return status.st_size, status.st_mtime_ns, status.st_ino
+
+
 def _remove_faulty(paths):
     """(path, fault) of what was written and is not whole. What could not be made at all, Blender reports."""
     for path in _written(paths):
-        fault = find_fault(path)
+        fault = _find_lasting_fault(path)
         if fault:
-            os.remove(path)
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(path)
             yield path, fault
 
 

@@ -5,11 +5,13 @@ import os
 import random
 import re
 import subprocess
+import sys
+import threading
 from array import array
 
 import bpy
 
-from harness import OUTPUT, SceneTest, blender_command, output
+from harness import ADDON, OUTPUT, SceneTest, blender_command, output
 
 
 class Borders(SceneTest):
@@ -94,6 +96,31 @@ class SharedFolder(SceneTest):
                 with open(os.path.join(OUTPUT, folder, name), 'rb') as file:
                     contents.append(_without_metadata(file.read()))
             self.assertEqual(*contents, name)
+
+    def test_picture_that_another_writes(self):
+        """It is left alone until it is whole, and removed where nobody goes on with it."""
+        self.still_life()
+        self.scene.render.filepath, self.scene.render.image_settings.file_format = output("taken"), 'PNG'
+        bpy.ops.render.render(write_still=True)
+        path = output("taken.png")
+        with open(path, 'rb') as file:
+            whole = file.read()
+        remove_faulty = sys.modules[ADDON].output._remove_faulty
+        for size, fault in ((0, "it is empty"), (len(whole) - 20, "its end is missing")):
+            _write(path, whole[:size])
+            writer = threading.Timer(0.3, _write, (path, whole))
+            writer.start()
+            self.assertEqual(list(remove_faulty([path])), [])
+            writer.join()
+            self.assertTrue(os.path.exists(path))
+            _write(path, whole[:size])
+            self.assertEqual(list(remove_faulty([path])), [(path, fault)])
+            self.assertFalse(os.path.exists(path))
+
+
+def _write(path, data):
+    with open(path, 'wb') as file:
+        file.write(data)
 
 
 def _without_metadata(png):
