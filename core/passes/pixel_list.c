@@ -4,12 +4,11 @@
  * each. */
 #include "passes.h"
 
-#define CAPACITY (1 << 20)
-#define GROUP    64 /* pass_visibility_list.comp: local_size_x */
+#define CAPACITY (1 << 20) /* more than the pixels of a row of any image */
+#define GROUP    64        /* pass_visibility_list.comp: local_size_x */
 
 int pixel_list_rows(const struct frame *frame) {
-    const int rows = CAPACITY / frame->width;
-    return rows > 0 ? rows : 1;
+    return CAPACITY / frame->width;
 }
 
 pnb_result pixel_list_begin(struct frame *frame) {
