@@ -198,3 +198,13 @@ def run_blender(*arguments, environment=None):
     done = subprocess.run(blender_command(*arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=300,
                           check=False, env={**os.environ, **(environment or {})})
     return done.returncode, done.stdout.decode(errors='replace')
+
+
+def write_image(path, red):
+    """A PNG file of one colour, of bytes that are data. Returns the path."""
+    image = bpy.data.images.new("Written", 4, 4)
+    image.pixels.foreach_set([red, 0.6, 0.2, 1.0] * 16)
+    image.filepath_raw, image.file_format = path, 'PNG'
+    image.save()
+    bpy.data.images.remove(image)
+    return path

@@ -8,7 +8,7 @@ from unittest import mock
 import bpy
 
 from exr import read_exr
-from harness import SceneTest, add_camera, add_plane, output, render_exr
+from harness import SceneTest, add_camera, add_plane, output, render_exr, write_image
 
 from penumbra import export, images, report, textures
 
@@ -34,15 +34,6 @@ class TextureTest(SceneTest):
         textures.cache.clear()
         self.addCleanup(textures.cache.clear)
 
-    def write(self, path, red):
-        """A file of one colour, of bytes that are data."""
-        image = bpy.data.images.new("Written", 4, 4)
-        image.pixels.foreach_set([red, 0.6, 0.2, 1.0] * 16)
-        image.filepath_raw, image.file_format = path, 'PNG'
-        image.save()
-        bpy.data.images.remove(image)
-        return path
-
     def load(self, path):
         self.node.image = bpy.data.images.load(path, check_existing=False)
         self.node.image.colorspace_settings.name = 'Non-Color'
@@ -64,7 +55,7 @@ class TextureTest(SceneTest):
 class Animation(TextureTest):
     def test_sequence(self):
         for frame in (1, 2, 3):
-            path = self.write(output(f'picture.{frame:04d}.png'), frame / 5)
+            path = write_image(output(f'picture.{frame:04d}.png'), frame / 5)
         self.load(path).source = 'SEQUENCE'
         user = self.node.image_user
         user.frame_duration, user.use_auto_refresh = 3, True
@@ -75,7 +66,7 @@ class Animation(TextureTest):
 
     def test_sequence_with_a_gap(self):
         for frame in (1, 3):
-            self.load(self.write(output(f'gap.{frame:04d}.png'), frame / 5)).source = 'SEQUENCE'
+            self.load(write_image(output(f'gap.{frame:04d}.png'), frame / 5)).source = 'SEQUENCE'
         self.node.image_user.frame_duration, self.node.image_user.use_auto_refresh = 3, True
         self.assertEqual(self.reds(3), [0.2, 1.0, 0.6])
         self.scene.frame_set(2)
@@ -84,53 +75,53 @@ class Animation(TextureTest):
 
     def test_reloaded(self):
         """A handler writes the file anew and reloads it."""
-        image = self.load(self.write(output('written.png'), 0.2))
+        image = self.load(write_image(output('written.png'), 0.2))
 
         def reload(scene, *_):
-            self.write(image.filepath, scene.frame_current / 5)
+            write_image(image.filepath, scene.frame_current / 5)
             image.reload()
         self.assertEqual(self.reds(3, reload), [0.2, 0.4, 0.6])
 
     def test_reloaded_later(self):
         """Other software wrote the file; a handler reloads it after the frame that was rendered with the old pixels."""
-        image = self.load(self.write(output('later.png'), 0.2))
+        image = self.load(write_image(output('later.png'), 0.2))
 
         def change(scene, *_):
             if scene.frame_current == 1:
                 self.assertAlmostEqual(image.pixels[1], 0.6)    # in memory from now on
-                self.write(image.filepath, 0.6)
+                write_image(image.filepath, 0.6)
             elif scene.frame_current == 2:
                 image.reload()
         self.assertEqual(self.reds(2, change), [0.2, 0.6])
 
     def test_other_file(self):
-        image = self.load(self.write(output('one.png'), 0.2))
-        self.write(output('two.png'), 0.4)
+        image = self.load(write_image(output('one.png'), 0.2))
+        write_image(output('two.png'), 0.4)
         with mock.patch.object(textures, '_start', time.time() + 1000.0):
             self.assertEqual(self.reds(2, lambda scene, *_: setattr(
                 image, 'filepath', output('one.png' if scene.frame_current == 1 else 'two.png'))), [0.2, 0.4])
 
     def test_packed(self):
         """A handler packs other content into the image."""
-        image = self.load(self.write(output('packed.png'), 0.2))
+        image = self.load(write_image(output('packed.png'), 0.2))
         image.pack()
         os.remove(image.filepath)       # a reload would pack it again
 
         def pack(scene, *_):
-            with open(self.write(output('content.png'), scene.frame_current / 5), 'rb') as file:
+            with open(write_image(output('content.png'), scene.frame_current / 5), 'rb') as file:
                 content = file.read()
             image.pack(data=content, data_len=len(content))
             image.reload()
         self.assertEqual(self.reds(3, pack), [0.2, 0.4, 0.6])
 
     def test_painted(self):
-        image = self.load(self.write(output('painted.png'), 0.2))
+        image = self.load(write_image(output('painted.png'), 0.2))
         self.assertEqual(self.reds(3, lambda scene, *_: image.pixels.foreach_set(
             [scene.frame_current / 5, 0.6, 0.2, 1.0] * 16)), [0.2, 0.4, 0.6])
 
     def test_only_what_may_differ_is_read(self):
         """Of a file that is as old as Blender nothing but its date is looked at."""
-        image = self.load(self.write(output('old.png'), 0.2))
+        image = self.load(write_image(output('old.png'), 0.2))
         with mock.patch.object(textures, '_start', time.time() + 1000.0), \
                 mock.patch.object(images, 'read', wraps=images.read) as read:
             self.reds(4)
@@ -157,7 +148,7 @@ class Kinds(TextureTest):
         self.scene.render.resolution_x = self.scene.render.resolution_y = 64
         self.scene.render.filepath = output('movie.mkv')
         self.scene.view_settings.view_transform = 'Standard'
-        self.load(self.write(output('film.png'), 0.5))
+        self.load(write_image(output('film.png'), 0.5))
         bpy.ops.render.render(animation=True)
         self.load(output('movie.mkv')).colorspace_settings.name = 'sRGB'
         self.assertEqual(self.node.image.source, 'MOVIE')
@@ -167,6 +158,6 @@ class Kinds(TextureTest):
         self.assertAlmostEqual(red[len(red) // 2], 0.5, delta=0.05)
 
     def test_projection(self):
-        self.load(self.write(output('boxed.png'), 0.5))
+        self.load(write_image(output('boxed.png'), 0.5))
         self.node.projection = 'BOX'
         self.assertTrue(any("material 'Test'" in line and "projection BOX" in line for line in self.lines()))

@@ -3,7 +3,7 @@
 
 import bpy
 
-from harness import add_cube, add_light, output, white_material
+from harness import add_cube, add_light, output, white_material, write_image
 from window import ViewportTest, psnr, read_picture
 
 
@@ -170,14 +170,6 @@ class Textures(EditTest):
         floor.data.uv_layers.new(name="Map")
         floor.data.materials[0] = material
 
-    def write(self, path, red):
-        image = bpy.data.images.new("Written", 4, 4)
-        image.pixels.foreach_set([red, 0.6, 0.2, 1.0] * 16)
-        image.filepath_raw, image.file_format = path, 'PNG'
-        image.save()
-        bpy.data.images.remove(image)
-        return path
-
     def test_painting(self):
         image = self.node.image = bpy.data.images.new("Painted", 4, 4)
         for red in (0.2, 0.8):
@@ -186,17 +178,17 @@ class Textures(EditTest):
             yield from self.check(f"painted {red}")
 
     def test_reload(self):
-        path = self.write(output("reloaded.png"), 0.2)
+        path = write_image(output("reloaded.png"), 0.2)
         image = self.node.image = bpy.data.images.load(path)
         yield from self.check("loaded")
-        self.write(path, 0.8)
+        write_image(path, 0.8)
         image.reload()
         yield from self.check("reloaded")
 
     def test_sequence(self):
         """Loading a picture does not make the viewport export again and again."""
         for frame in (1, 2, 3):
-            path = self.write(output(f"sequence.{frame:04d}.png"), frame / 4)
+            path = write_image(output(f"sequence.{frame:04d}.png"), frame / 4)
         self.node.image = bpy.data.images.load(path)
         self.node.image.source = 'SEQUENCE'
         self.node.image_user.frame_duration, self.node.image_user.use_auto_refresh = 3, True
