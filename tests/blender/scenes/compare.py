@@ -21,6 +21,9 @@ sys.path[:0] = [HERE, os.path.dirname(HERE)]
 
 from harness import ADDON, OUTPUT, read_exr, render_exr  # noqa: E402
 import frame_rows  # noqa: E402, F401
+import geometry_rows  # noqa: E402, F401
+import instance_rows  # noqa: E402, F401
+import light_rows  # noqa: E402, F401
 import material_rows  # noqa: E402, F401
 import scene_rows  # noqa: E402, F401
 import texture_rows  # noqa: E402, F401
