@@ -137,35 +137,38 @@ class SceneExport:
         key = ob.as_pointer(), data.as_pointer(), parent and parent.as_pointer()
         templates = self._templates.get(key)
         if templates is None:
-            templates = self._templates[key] = LIGHT if ob.type == 'LIGHT' else list(self._make_templates(ob))
+            templates = self._templates[key] = LIGHT if ob.type == 'LIGHT' else \
+                list(self._make_templates(ob, self._flags(ob, parent or ob)))
         if templates is LIGHT:
             self._add_light(ob, parent, instance.matrix_world)
         return templates
 
-    def _make_templates(self, ob):
+    def _make_templates(self, ob, flags):
         slots = [self._material(slot.material) for slot in ob.material_slots]
         mesh = self._meshes.of(ob, tuple(material.needs for material in slots))
         indices = tuple(material.index for material in slots)
         if mesh:
             triangles = len(ob.data.loop_triangles) if ob.type == 'MESH' else 0
-            yield Template(self._instance(ob, name_of(ob), mesh, indices), False, triangles)
+            yield Template(self._instance(name_of(ob), mesh, flags, indices), False, triangles)
         for name, mesh, slot in self._meshes.hair(ob):
-            yield Template(self._instance(ob, name, mesh, indices[min(slot, len(indices) - 1):][:1]), True, 0)
+            slots = indices[min(slot, len(indices) - 1):][:1]
+            yield Template(self._instance(name, mesh, flags, slots), True, 0)
 
-    def _instance(self, ob, name, mesh, slots):
-        return capi.Instance(mesh=mesh, name=name.encode(), flags=self._flags(ob), first_slot=self._first_slot(slots),
+    def _instance(self, name, mesh, flags, slots):
+        return capi.Instance(mesh=mesh, name=name.encode(), flags=flags, first_slot=self._first_slot(slots),
                              slot_count=len(slots))
 
-    def _flags(self, ob):
-        """Of the object, and of its collections in this view layer."""
-        original = ob.original
-        is_seen = ob.visible_camera and not original.indirect_only_get(view_layer=self._view_layer)
-        is_holdout = ob.is_holdout or original.holdout_get(view_layer=self._view_layer)
+    def _flags(self, ob, owner):
+        """Of an object and of its `owner`, the one that instances it or itself, with its collections."""
+        both = ob, owner
+        is_holdout = owner.is_holdout or owner.original.holdout_get(view_layer=self._view_layer)
+        is_indirect = not is_holdout and owner.original.indirect_only_get(view_layer=self._view_layer)
+        is_seen = not is_indirect and all(o.visible_camera for o in both)
         return ((0 if is_seen else capi.INSTANCE_HIDDEN_FROM_CAMERA)
-                | (0 if ob.visible_shadow else capi.INSTANCE_NO_SHADOW)
-                | (0 if original.penumbra.receive_shadows else capi.INSTANCE_NO_RECEIVE)
+                | (0 if all(o.visible_shadow for o in both) else capi.INSTANCE_NO_SHADOW)
+                | (0 if all(o.original.penumbra.receive_shadows for o in both) else capi.INSTANCE_NO_RECEIVE)
                 | (capi.INSTANCE_HOLDOUT if is_holdout else 0)
-                | (capi.INSTANCE_SHADOW_CATCHER if ob.is_shadow_catcher else 0))
+                | (capi.INSTANCE_SHADOW_CATCHER if any(o.is_shadow_catcher for o in both) else 0))
 
     # ---- Lights ----
 

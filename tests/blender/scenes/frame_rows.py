@@ -131,24 +131,32 @@ def view_layer_material_override(stage):
 def view_layer_excluded_collection(stage):
     """A collection is excluded from the layer: no picture and no shadow of it."""
     stage.cube()
-    _collect(stage, stage.cube(location=(0.8, 0.3, 0.4))).exclude = True
+    collect(stage, stage.cube(location=(0.8, 0.3, 0.4))).exclude = True
 
 
 @row('frame')
 def view_layer_holdout(stage):
     """A collection cuts a hole and casts its shadow."""
     stage.cube()
-    _collect(stage, stage.cube(location=(0.8, 0.3, 0.4))).holdout = True
+    collect(stage, stage.cube(location=(0.8, 0.3, 0.4))).holdout = True
 
 
 @row('frame')
 def view_layer_indirect_only(stage):
     """A collection is not seen but casts its shadow."""
     stage.cube()
-    _collect(stage, stage.cube(location=(0.8, 0.3, 0.4))).indirect_only = True
+    collect(stage, stage.cube(location=(0.8, 0.3, 0.4))).indirect_only = True
 
 
-def _collect(stage, ob):
+@row('frame')
+def view_layer_holdout_and_indirect(stage):
+    """Of a collection with both switches the hole counts."""
+    stage.cube()
+    part = collect(stage, stage.cube(location=(0.8, 0.3, 0.4)))
+    part.holdout = part.indirect_only = True
+
+
+def collect(stage, ob):
     """Moves the object into a collection; its layer collection."""
     collection = bpy.data.collections.new("Part")
     stage.scene.collection.children.link(collection)

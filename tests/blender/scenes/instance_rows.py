@@ -3,6 +3,7 @@
 
 import os
 
+from frame_rows import collect
 from geometry_rows import chain, geometry_nodes
 from rows import *
 
@@ -78,6 +79,69 @@ def light_in_instance(stage):
     for x in (-0.9, 0.9):
         empty = add_object("Instance", None, location=(x, 0, 0))
         empty.instance_type, empty.instance_collection = 'COLLECTION', collection
+
+
+def _instanced(stage, ob):
+    """An instance of a collection that holds the object only."""
+    collection = bpy.data.collections.new("Group")
+    stage.scene.collection.objects.unlink(ob)
+    collection.objects.link(ob)
+    empty = add_object("Instance", None)
+    empty.instance_type, empty.instance_collection = 'COLLECTION', collection
+    return empty
+
+
+@row('scene')
+def instance_not_seen(stage):
+    """The instancing object is not seen by the camera, so what it instances is not."""
+    _instanced(stage, stage.cube()).visible_camera = False
+
+
+@row('scene')
+def instance_without_shadow(stage):
+    """The instancing object casts no shadow."""
+    _instanced(stage, stage.cube()).visible_shadow = False
+
+
+@row('scene')
+def instance_holdout(stage):
+    """The instancing object cuts a hole."""
+    _instanced(stage, stage.cube()).is_holdout = True
+
+
+@row('scene')
+def instance_of_holdout(stage):
+    """A holdout that is instanced is none: the instancing object decides."""
+    cube = stage.cube()
+    cube.is_holdout = True
+    _instanced(stage, cube)
+
+
+@row('scene')
+def instance_indirect_only(stage):
+    """The instancing object lies in a collection that is not seen but casts its shadow."""
+    collect(stage, _instanced(stage, stage.cube())).indirect_only = True
+
+
+@row('scene')
+def instance_in_holdout_collection(stage):
+    """The instancing object lies in a collection that cuts a hole."""
+    collect(stage, _instanced(stage, stage.cube())).holdout = True
+
+
+@row('scene')
+def instance_shadow_catcher(stage):
+    """The instancing object makes a shadow catcher of the floor."""
+    refine(stage)   # see shadow_catcher
+    stage.cube()
+    _instanced(stage, stage.floor).is_shadow_catcher = True
+
+
+@row('scene')
+def particles_without_shadow(stage):
+    """The emitter's switch is that of its particles, too."""
+    particle_instances(stage)
+    bpy.data.objects["Emitter"].visible_shadow = False
 
 
 def _library(stage):
