@@ -101,7 +101,7 @@ class PenumbraEngine(bpy.types.RenderEngine):
         if view:
             self.active_view_set(view)
         render = scene.render
-        camera = scene.camera
+        camera = self.camera_override or scene.camera   # views of several cameras: the active view's
         exported.set_camera(camera, *self._pose(camera), width, height, render.pixel_aspect_y / render.pixel_aspect_x)
         values = settings.for_still(depsgraph, width, height)
         exported.use_own_techniques(settings.forced_technique() is None)

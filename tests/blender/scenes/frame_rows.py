@@ -220,6 +220,16 @@ def stereo_parallel(stage):
     stage.camera.data.stereo.convergence_mode = 'PARALLEL'
 
 
+@row('frame')
+def view_with_camera(stage):
+    """A view with a camera of its own, found by the suffix of its name."""
+    _stereo(stage, 'right')
+    stage.scene.render.views_format = 'MULTIVIEW'
+    stage.camera.name = "Eye_L"
+    add_camera(location=(1.5, -3.8, 4.2), rotation=(radians(45), 0, 0.3)).name = "Eye_R"
+    stage.scene.camera = stage.camera
+
+
 # Cycles takes the depth of the first surface of the first sample, inside the pixel; ours is at its centre.
 @row('frame', channel='Depth', light=0.005)
 def depth_pass(stage):
