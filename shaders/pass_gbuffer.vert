@@ -28,7 +28,8 @@ void main() {
     // Of length 1 before it is interpolated, as Cycles and EEVEE have it: an uneven scale would favour some corners.
     normal *= side * inversesqrt(max(dot(normal, normal), 1e-37));
 #ifdef SPECIAL
-    mirrored = side < 0.0 ? 1 : 0;
+    bool is_image_mirrored = dot(camera.axis_x.xyz, cross(camera.axis_y.xyz, camera.axis_z.xyz)) < 0.0;
+    mirrored = (side < 0.0) != is_image_mirrored ? 1 : 0;
     tint = vertex_color * vertex_color;
 #endif
 #ifdef LINKS

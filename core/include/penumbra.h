@@ -312,7 +312,8 @@ typedef enum pnb_projection { PNB_PERSPECTIVE = 0, PNB_ORTHOGRAPHIC = 1 } pnb_pr
 typedef struct pnb_camera {
     uint32_t struct_size;
     pnb_projection projection;
-    float matrix[16];            /* camera to world; looks along its local -Z, +Y is up; scale is ignored */
+    float matrix[16];            /* camera to world; looks along its local -Z, +Y is up; scale is ignored, but a
+                                  * mirrored one mirrors the image */
     float window[4];             /* left, right, bottom, top of the full image: at distance 1 (PERSPECTIVE) or in
                                   * metres (ORTHOGRAPHIC). Shift, sensor fit and pixel aspect are all in here.
                                   * All zero: 50 mm on a 36 mm sensor, or 6 m wide */

@@ -28,11 +28,12 @@ static void camera_resolve_matrix(struct scene_camera *camera, struct messages *
         memset(matrix, 0, sizeof camera->matrix);
     } else if (axes_complete(matrix)) {
         messages_add(messages, "camera: its matrix is singular (a scale of 0?); the missing axes are made up");
-    } else if (axes_determinant(matrix) < 0) {
-        messages_add(messages, "camera: its matrix is mirrored; the image is not");
     }
     axes_complete(matrix);
+    const float side = axes_determinant(matrix) < 0 ? -1.0f : 1.0f;
     axes_orthonormalize(matrix);
+    for (int i = 0; i < 3; i++)
+        matrix[i] *= side;
     matrix_make_affine(matrix);
 }
 

@@ -301,13 +301,13 @@ class Cameras(ExportTest):
         """A line each, once, though both eyes of stereo look through the camera."""
         camera = add_camera()
         camera.data.dof.use_dof = True
-        camera.scale.x = -1
+        camera.data.clip_start, camera.data.clip_end = 5.0, 1.0
         self.scene.render.use_motion_blur = True
         self.scene.render.use_multiview = True
         bpy.ops.render.render()
         self.assertEqual([line[:line.index(':')] for line in report.lines],
                          ["scene 'Scene'", "camera 'Camera'", "camera 'Camera'"])
-        for line, word in zip(report.lines, ("motion blur", "depth of field", "mirrored")):
+        for line, word in zip(report.lines, ("motion blur", "depth of field", "clip")):
             self.assertIn(word, line)
 
 

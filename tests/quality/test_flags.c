@@ -303,6 +303,32 @@ static void mirrored(void) {
     stage_destroy(&mirror);
 }
 
+/* Through a mirrored camera: the same picture from right to left, with the front faces that it had. */
+static void mirrored_camera(void) {
+    struct stage *plain = stage_create(TEST_LIGHT_ELLIPSE), *mirror = stage_create(TEST_LIGHT_ELLIPSE);
+    for (int i = 0; i < 2; i++) {
+        struct stage *stage = i == 0 ? plain : mirror;
+        add_box(stage)->matrix[12] = 0.7f;
+        stage->builder.materials[MATERIAL_RED].flags |= PNB_MATERIAL_CULL_CAMERA;
+    }
+    for (int i = 0; i < 3; i++)
+        mirror->builder.scene.camera.matrix[i] *= -1;
+    stage_render(plain);
+    stage_render(mirror);
+    double difference = 0;
+    for (size_t i = 0; i < 4 * SIDE * SIDE && plain->render.job && mirror->render.job; i++) {
+        const size_t column = i / 4 % SIDE, opposite = i + 4 * (SIDE - 1) - 8 * column;
+        difference = fmax(difference,
+                          fabs((double)plain->render.combined[i] - (double)mirror->render.combined[opposite]));
+    }
+    printf("mirrored camera: %d of %d pixels of floor, Combined off by up to %.2g\n", floor_pixels(mirror),
+           floor_pixels(plain), difference);
+    CHECK_INT(floor_pixels(mirror), floor_pixels(plain));
+    CHECK_AT_MOST(difference, 1e-4);
+    stage_destroy(&plain);
+    stage_destroy(&mirror);
+}
+
 static void flattened(void) {
     struct stage *sheet = stage_create(TEST_LIGHT_ELLIPSE), *flat = stage_create(TEST_LIGHT_ELLIPSE);
     struct shape shape = {0};
@@ -338,6 +364,7 @@ int main(void) {
     links();
     alpha();
     mirrored();
+    mirrored_camera();
     flattened();
     return quality_close();
 }

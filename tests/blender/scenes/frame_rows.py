@@ -112,6 +112,15 @@ def camera_scaled_and_parented(stage):
 
 
 @row('frame')
+def camera_mirrored(stage):
+    """A negative scale mirrors the picture, but no face turns its back for it."""
+    material = white_material("Front")
+    material.use_backface_culling = True
+    stage.cube(location=(0.5, 0.1, 0.5), material=material)
+    stage.camera.scale = -1, 1, 1
+
+
+@row('frame')
 def clip_planes(stage):
     """Near and far planes cut the cube and the floor."""
     stage.cube(half=0.8)
