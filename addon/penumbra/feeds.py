@@ -15,7 +15,7 @@ class Picture(NamedTuple):
     """An image as a node uses it."""
     image: object
     file: str           # see images.read
-    use: str            # textures.COLOR or ALPHA
+    use: str            # textures.STRAIGHT, PREMULTIPLIED or ALPHA
     flags: int          # capi.TEXTURE_*
     uv_map: str
     matrix: tuple       # of the texture coordinates
@@ -68,11 +68,13 @@ class FeedReader:
     # ---- Nodes without inputs that count ----
 
     def _constant_leaf(self, source):
-        """What Cycles shows where a name is missing."""
-        node = source.output.node
+        """What Cycles shows where a name is missing and of alpha that an image ignores."""
+        node, name = source.output.node, source.output.name
+        if node.type == 'TEX_IMAGE' and node.image and name == 'Alpha' and node.image.alpha_mode == 'NONE':
+            return 1.0
         if node.type == 'TEX_IMAGE' and not node.image:
             self.warn(f"node {name_of(node)} has no image")
-            return 1.0 if source.output.name == 'Alpha' else [*images.MISSING, 1.0]
+            return 1.0 if name == 'Alpha' else [*images.MISSING, 1.0]
         if node.type == 'ATTRIBUTE' and not node.attribute_name:
             self.warn(f"node {name_of(node)} names no attribute, it is black")
             return [0.0] * 4
@@ -127,7 +129,8 @@ class FeedReader:
         if node.projection != 'FLAT':
             self.warn(f"image '{name_of(node.image)}' is placed by a UV map, without its projection {node.projection}")
         uv_map, matrix = uvs.placement(source, self.warn)
-        use = textures.ALPHA if source.output.name == 'Alpha' else textures.COLOR
+        use = textures.ALPHA if source.output.name == 'Alpha' else \
+            textures.STRAIGHT if node.outputs['Alpha'].is_linked else textures.PREMULTIPLIED
         return Picture(node.image, images.sequence_file(node.image, node.image_user), use, textures.node_flags(node),
                        uv_map, matrix)
 

@@ -4,15 +4,18 @@
 import os
 import time
 import zlib
+from array import array
 from ctypes import c_void_p
+from operator import mul
 
 import bpy
 
 from . import capi, color_spaces, images
 from .names import name_of
 
-# Uses of an image: its colour, which is its brightness where a number is asked for, or its alpha channel.
-COLOR, ALPHA = 'color', 'alpha'
+# Uses of an image: its colour, which is its brightness where a number is asked for, straight or multiplied with its
+# alpha channel, or that channel.
+STRAIGHT, PREMULTIPLIED, ALPHA = 'straight', 'premultiplied', 'alpha'
 
 # Files that changed since then may not be what Blender had read before, or be read anew unnoticed.
 _start = time.time()
@@ -128,6 +131,7 @@ def _create(image, file, use, flags, warnings):
     desc = capi.TextureDesc(name=name_of(image).encode(), width=raster.width, height=raster.height, channels=count,
                             flags=flags)
     if use != ALPHA:
+        _associate(raster, image, use)
         desc.is_srgb = color_spaces.decode(raster, image, warnings)
     desc.pixels.data = c_void_p(raster.values.buffer_info()[0] + 4 * first)
     desc.pixels.stride = 4 * raster.channels
@@ -136,6 +140,24 @@ def _create(image, file, use, flags, warnings):
     except capi.Error as error:
         warnings.append(f"image '{name_of(image)}': {error}")
         return None
+
+
+def _associate(raster, image, use):
+    """Blender has bytes straight and floats premultiplied. Cycles multiplies colours as they are stored."""
+    is_premultiplied = raster.is_float
+    if (raster.channels < 4 or is_premultiplied == (use == PREMULTIPLIED)
+            or image.alpha_mode not in {'STRAIGHT', 'PREMUL'} or image.colorspace_settings.is_data):
+        return
+    alpha = raster.values[3::4]
+    if alpha == array('f', [1.0]) * len(alpha):
+        return
+    change = _divided if is_premultiplied else mul
+    for channel in range(3):
+        raster.values[channel::4] = array('f', map(change, raster.values[channel::4], alpha))
+
+
+def _divided(color, alpha):
+    return color / alpha if alpha else color
 
 
 def _channels(channels, use):

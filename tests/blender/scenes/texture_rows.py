@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sequences of images, attributes of meshes, and nodes between a texture and a shader."""
+"""Sequences and alpha of images, attributes of meshes, and nodes between a texture and a shader."""
 
-from material_rows import Nodes, paint, picture, picture_files, textured, unwrap
+from material_rows import Nodes, paint, picture, picture_files, principled, textured, unwrap
 from rows import *
 
 
@@ -129,3 +129,46 @@ def attribute_missing(stage):
     refine(stage)
     _attribute(stage, 'FLOAT_COLOR', 'POINT', name="Lost")
     stage.cube(half=0.45, location=(0.8, 0.3, 0.5), rotation=(0, 0, 0.3))
+
+
+# ---- Alpha of images ----
+
+def _thirds(x, y):
+    return [0.0, 0.5, 1.0][(x + y) % 3]
+
+
+@row('materials')
+def image_alpha_unused(stage):
+    """Bytes with alpha, of which only the colour is used: it is multiplied with alpha."""
+    refine(stage)   # a dark picture
+    textured(stage, picture(alpha=_thirds))
+
+
+@row('materials')
+def image_alpha_unused_data(stage):
+    """Non-colour data with alpha: colours as they are stored."""
+    textured(stage, picture(alpha=_thirds, color_space='Non-Color'))
+
+
+@row('materials')
+def image_alpha_float(stage):
+    """Floats with alpha, both used: colours are divided by alpha."""
+    _decal(stage, picture(alpha=_thirds, float_buffer=True))
+
+
+@row('materials')
+def image_alpha_ignored(stage):
+    """An image whose alpha mode is None."""
+    image = picture(alpha=_thirds)
+    image.alpha_mode = 'NONE'
+    _decal(stage, image)
+
+
+def _decal(stage, image):
+    """A cube with colour and alpha of an image."""
+    nodes = Nodes()
+    texture, shader = nodes.add('TexImage'), principled(nodes)
+    texture.image, texture.interpolation = image, 'Closest'
+    nodes.link(texture.outputs['Color'], shader.inputs['Base Color'])
+    nodes.link(texture.outputs['Alpha'], shader.inputs['Alpha'])
+    unwrap(stage.cube(material=nodes.surface(shader.outputs[0])))
