@@ -70,6 +70,9 @@ class _EmissionReader:
         elif node.type == 'TEX_SKY':
             found = sky.mean(node)
             self.warn("its sky counts by the mean colour of a clear one, without the disc of the sun")
+        elif node.type == 'LIGHT_PATH' and source.output.name.startswith('Is '):
+            found = float(source.output.name == 'Is Diffuse Ray')
+            self.warn(f"node {name_of(node)}: it counts as for diffuse surfaces, for the camera too")
         elif node.type == 'LIGHT_FALLOFF':
             found = self.value(source.input('Strength'), 100.0)
             if source.output.name != 'Quadratic' or values.constant(source.input('Smooth'), 0.0) != 0.0:

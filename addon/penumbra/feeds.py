@@ -9,6 +9,8 @@ from .names import name_of
 
 # Of nodes in one line.
 _MOST_NAMES = 3
+# Outputs of a Light Path node: kinds of rays that a material may look different to.
+CAMERA_RAY, SHADOW_RAY = 'Is Camera Ray', 'Is Shadow Ray'
 
 
 class Picture(NamedTuple):
@@ -31,10 +33,12 @@ class Feed(NamedTuple):
 
 
 class FeedReader:
-    """Of one material."""
+    """Of one material, as it is to one kind of rays."""
 
-    def __init__(self, warn):
+    def __init__(self, warn, ray):
         self.warn = warn
+        self.asks_for_ray = False
+        self._ray = ray
         self._known = {}        # Source.key(): Feed or None
         self._left_out = {}     # name of a texture: names of the nodes that it is drawn without
 
@@ -68,8 +72,11 @@ class FeedReader:
     # ---- Nodes without inputs that count ----
 
     def _constant_leaf(self, source):
-        """What Cycles shows where a name is missing and of alpha that an image ignores."""
+        """What Cycles shows where a name is missing, alpha that an image ignores, and the kind of the rays."""
         node, name = source.output.node, source.output.name
+        if node.type == 'LIGHT_PATH' and name.startswith('Is '):
+            self.asks_for_ray = True
+            return float(name == self._ray)
         if node.type == 'TEX_IMAGE' and node.image and name == 'Alpha' and node.image.alpha_mode == 'NONE':
             return 1.0
         if node.type == 'TEX_IMAGE' and not node.image:

@@ -28,7 +28,7 @@ def fill_material(target, material, texture, warnings):
     placed = _placement(surface, name_of(material), warnings)
     if placed and placed.matrix != uvs.IDENTITY:
         target.uv_matrix[:] = placed.matrix
-    target.flags = _flags(material, surface)
+    target.flags = _flags(material, surface) | _shadow_flags(surface, name_of(material), warnings)
     return Needs(placed.uv_map if placed else '', surface.color_attribute)
 
 
@@ -44,6 +44,19 @@ def _flags(material, surface):
              capi.MATERIAL_OPAQUE_SHADOW: compat.casts_opaque_shadow(material),
              capi.MATERIAL_VERTEX_COLOR: surface.color_attribute is not None}
     return sum(flag for flag, is_set in flags.items() if is_set)
+
+
+def _shadow_flags(surface, name, warnings):
+    """Of a surface that is another one to shadow rays: those either pass or stop."""
+    shadow = surface.shadow
+    if shadow is None or (shadow.alpha, shadow.alpha_image) == (surface.alpha, surface.alpha_image):
+        return 0
+    if not shadow.alpha_image and shadow.alpha >= 1.0:
+        return capi.MATERIAL_OPAQUE_SHADOW
+    if shadow.alpha > 0.0 or shadow.is_tinted or min(shadow.clear) < 1.0:
+        warnings.append(f"material '{name}': its shadow is that of what the camera sees")
+        return 0
+    return capi.MATERIAL_NO_SHADOW
 
 
 def _placement(surface, name, warnings):

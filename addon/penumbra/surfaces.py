@@ -4,7 +4,7 @@
 from dataclasses import dataclass, field, replace
 
 from . import compat, nodes, values
-from .feeds import FeedReader
+from .feeds import CAMERA_RAY, SHADOW_RAY, FeedReader
 from .names import name_of
 
 GREY = [0.8, 0.8, 0.8]
@@ -23,6 +23,7 @@ class Surface:
     is_tinted: bool = False                                 # and by color_image, too
     is_holdout: bool = False
     color_attribute: str = None     # '': the one for renders, None: none
+    shadow: object = None           # the Surface that shadow rays meet, where a Light Path node makes another one
 
     def images(self):
         return [image for image in (self.color_image, self.emission_image, self.alpha_image) if image]
@@ -34,14 +35,18 @@ class Surface:
 def read_surface(material, warnings):
     if not compat.uses_nodes(material):
         return Surface(color=list(material.diffuse_color[:3]))
-    return _SurfaceReader(name_of(material), warnings).surface(material.node_tree)
+    reader = _SurfaceReader(name_of(material), warnings, CAMERA_RAY)
+    surface = reader.surface(material.node_tree)
+    if reader.feeds.asks_for_ray:
+        surface.shadow = _SurfaceReader(reader.name, [], SHADOW_RAY).surface(material.node_tree)
+    return surface
 
 
 class _SurfaceReader:
-    def __init__(self, name, warnings):
+    def __init__(self, name, warnings, ray):
         self.name = name
         self.warnings = warnings
-        self.feeds = FeedReader(self.warn)
+        self.feeds = FeedReader(self.warn, ray)
         self.omitted = {}       # what is not drawn, in the order found
         self._known = {}        # Source.key(): Surface
 

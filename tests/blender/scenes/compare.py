@@ -25,6 +25,7 @@ import geometry_rows  # noqa: E402, F401
 import instance_rows  # noqa: E402, F401
 import light_rows  # noqa: E402, F401
 import material_rows  # noqa: E402, F401
+import ray_rows  # noqa: E402, F401
 import scene_rows  # noqa: E402, F401
 import texture_rows  # noqa: E402, F401
 import world_rows  # noqa: E402, F401
