@@ -304,6 +304,17 @@ class Emission(SceneTest):
         emission.of_world(world, lines)
         self.assertEqual(lines, ["world 'World': it is drawn without its volume"])
 
+    def test_world_by_rays(self):
+        """It lights as diffuse rays see it."""
+        world, path = self.world('ShaderNodeLightPath')
+        background = next(node for node in world.node_tree.nodes if node.type == 'BACKGROUND')
+        for output, expected in (('Is Camera Ray', 0.0), ('Is Diffuse Ray', 1.0)):
+            world.node_tree.links.new(path.outputs[output], background.inputs['Color'])
+            lines = []
+            self.assertEqual(emission.of_world(world, lines), [expected] * 3)
+            self.assertEqual(lines, ["world 'World': node Light Path: it counts as for diffuse surfaces, for the "
+                                     "camera too"])
+
     def test_light_falloff(self):
         light = add_light("Light", 'POINT').data
         light.use_nodes = True
