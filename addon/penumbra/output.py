@@ -59,15 +59,15 @@ def _written(paths):
     return [path for path in paths if os.path.isfile(path) and os.path.getmtime(path) >= _started[0]]
 
 
-def _find_lasting_fault(path):
-    """As find_fault, of a file that does not change for a second: a Blender that shares the folder and took the same
-    frame may be writing it."""
-    while fault := find_fault(path):
-        before = _state(path)
+def _lasting_faults(paths):
+    """{path: fault} of files that do not change for a second: a Blender that shares the folder and took the same frame
+    may be writing one."""
+    lasting = {}
+    while faults := {path: fault for path in paths if path not in lasting and (fault := find_fault(path))}:
+        before = {path: _state(path) for path in faults}
         time.sleep(1)
-        if _state(path) == before:
-            return fault
-    return None
+        lasting.update((path, fault) for path, fault in faults.items() if _state(path) == before[path])
+    return lasting
 
 
 def _state(path):
@@ -80,12 +80,10 @@ def _state(path):
 
 def _remove_faulty(paths):
     """(path, fault) of what was written and is not whole. What could not be made at all, Blender reports."""
-    for path in _written(paths):
-        fault = _find_lasting_fault(path)
-        if fault:
-            with contextlib.suppress(FileNotFoundError):
-                os.remove(path)
-            yield path, fault
+    for path, fault in _lasting_faults(_written(paths)).items():
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(path)
+        yield path, fault
 
 
 def note_failure():
