@@ -83,7 +83,11 @@ class PenumbraEngine(bpy.types.RenderEngine):
         if scene.camera is None:
             raise RenderFailed(f"Scene '{name_of(scene)}' has no camera")
         self.update_stats("", "Exporting")
-        with export.SceneExport(depsgraph) as exported:
+        try:
+            exported = export.SceneExport(depsgraph, is_cancelled=self.is_cancelled)
+        except export.Cancelled:
+            return
+        with exported:
             views = [view.name for view in scene.render.views if view.use] if scene.render.use_multiview else [""]
             for view in views:
                 if not self._render_view(depsgraph, exported, view):

@@ -14,6 +14,10 @@ from .mesh import NO_NEEDS
 from .names import name_of
 
 
+class Cancelled(Exception):
+    """The user ended the render during the export."""
+
+
 class ExportedMaterial(NamedTuple):
     index: int
     needs: object       # mesh.Needs
@@ -38,14 +42,16 @@ LIGHT = ()
 class SceneExport:
     """A pnb_scene and all it points to; `close` it when the library has copied it."""
 
-    def __init__(self, depsgraph, use_pointers=True, kept=None, shown_in=None):
-        """`kept`: a Kept that outlives this export; `shown_in`: only what this 3D view's local view shows."""
+    def __init__(self, depsgraph, use_pointers=True, kept=None, shown_in=None, is_cancelled=lambda: False):
+        """`kept`: a Kept that outlives this export; `shown_in`: only what this 3D view's local view shows;
+        `is_cancelled`: asked before each object, True raises Cancelled."""
         self.scene = capi.Scene(camera=capi.Camera())
         self.warnings = []
         self.triangle_count = 0     # of all instances
         self._kept = kept
         self._meshes = MeshStore(depsgraph.mode == 'RENDER', use_pointers, kept, self.warnings)
         self._shown_in = shown_in
+        self._is_cancelled = is_cancelled
         self._templates = {}        # addresses of object, data and instancing object: what is drawn of it
         self._links = LightLinks()
         self._texture_cache = kept.textures if kept else textures.cache
@@ -137,6 +143,8 @@ class SceneExport:
         key = ob.as_pointer(), data.as_pointer(), parent and parent.as_pointer()
         templates = self._templates.get(key)
         if templates is None:
+            if self._is_cancelled():
+                raise Cancelled
             templates = self._templates[key] = LIGHT if ob.type == 'LIGHT' else \
                 list(self._make_templates(ob, self._flags(ob, parent or ob)))
         if templates is LIGHT:

@@ -328,6 +328,22 @@ class BadInput(SceneTest):
             penumbra.technique, penumbra.samples = 'PCSS', 1
             self.assertEqual(self.finite(), before)
 
+    def test_cancelled_while_exporting(self):
+        """Before an object is read: many or large ones take long."""
+        addon = sys.modules[ADDON]
+        for _number in range(9):
+            add_cube()
+        made, make = [], addon.geometry.MeshStore.of
+
+        def of(*arguments):
+            made.append(1)
+            return make(*arguments)
+        with mock.patch.object(addon.engine.PenumbraEngine, 'is_cancelled', lambda _self: len(made) > 2), \
+                mock.patch.object(addon.geometry.MeshStore, 'of', of):
+            bpy.ops.render.render()
+        self.assertEqual(len(made), 3)
+        self.finite()
+
     def test_handler_edits_the_scene(self):
         """Objects and lights that come and go while frames are rendered."""
         def edit(scene, *_arguments):
