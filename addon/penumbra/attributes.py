@@ -30,8 +30,8 @@ def read_colors(mesh, attribute, warn):
         warn(f"attribute '{layer.name}' cannot be a colour, it is black")
         return Colors('vertex_colors', array('f', _BLACK * len(mesh.vertices)))
     values = _rgba(layer)
-    if not layer.data_type.endswith('COLOR') and len(values) and max(values) > 1.0:
-        warn(f"attribute '{layer.name}' is cut off at 1")
+    if layer.data_type != 'BYTE_COLOR' and len(values) and (max(values) > 1.0 or min(values) < 0.0):
+        warn(f"attribute '{layer.name}' is cut off at 0 and 1")
     if layer.domain == 'CORNER':
         return Colors('corner_colors', values)
     if layer.domain == 'FACE':

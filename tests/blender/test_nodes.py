@@ -8,7 +8,7 @@ import bpy
 
 from harness import CyclesTest, SceneTest, add_camera, add_light, add_plane
 
-from penumbra import emission, sky, surfaces
+from penumbra import attributes, emission, sky, surfaces
 
 COLOR = 0.7, 0.3, 0.1, 1.0
 
@@ -275,6 +275,19 @@ class Lines(SceneTest):
         lines = self.lines(lambda tree, shader: tree.tree.links.new(tree.add('VolumeScatter').outputs[0],
                                                                     tree.output.inputs['Volume']))
         self.assertEqual(lines, ["material 'Test': it is drawn without its volume"])
+
+    def test_attribute_out_of_range(self):
+        mesh = add_plane().data
+        for number, (kind, value, count) in enumerate((('FLOAT_COLOR', 1.0, 0), ('FLOAT_COLOR', 2.0, 1),
+                                                       ('FLOAT', 1.0, 0), ('FLOAT', -0.5, 1))):
+            layer = mesh.attributes.new(f"Paint{number}", kind, 'POINT')
+            if kind == 'FLOAT':
+                layer.data[0].value = value
+            else:
+                layer.data[0].color = value, 0.0, 0.0, 1.0
+            lines = []
+            attributes.read_colors(mesh, layer.name, lines.append)
+            self.assertEqual(len(lines), count, (kind, value))
 
     def test_negative_emission(self):
         def build(tree, _shader):
