@@ -9,7 +9,8 @@
 
 uniform ivec4 levels[14];        // first head, texels per side, log2 of a texel's width, border of a stack or -1
 uniform float filter_widths[14]; // of the box with the variance of the level's filter, in texels of the map
-uniform int level_count, p_lookups, p_antialiasing;
+uniform int level_count, p_antialiasing;
+uniform ivec2 parts; // of the emitter, along each of its axes
 
 // What the fragments of one level hide between the depths of two levels.
 struct share {
@@ -210,19 +211,20 @@ OPACITY hidden(receiver r, vec2 aside, float side, float least, int last) {
 }
 
 // The filters of one level differ from the emitter in shape and forget which of the casters they blur overlap. So the
-// emitter is cut into p_lookups x p_lookups equal parts, for which narrower filters do.
+// emitter is cut into equal parts, about as long as they are wide, for which narrower filters do.
 vec3 technique_visibility(receiver r) {
     seen_emitter seen = emitter_seen(r);
-    float parts = float(p_lookups);
-    float side = kernel_side(r) * sqrt(seen.scale.x * seen.scale.y) / parts;
-    float least = least_width(r) / parts;
+    float narrower = inversesqrt(float(parts.x * parts.y));
+    float side = kernel_side(r) * sqrt(seen.scale.x * seen.scale.y) * narrower;
+    float least = least_width(r) * narrower;
     int last = last_level(r, side, least);
     OPACITY opacity = OPACITY(0.0);
     vec2 extent = (ELLIPSE == 1 ? 0.886 : 1.0) * seen.scale; // half sides of the square with its area
-    for (int i = 0; i < p_lookups * p_lookups; i++) {
-        vec2 part = vec2(float(i % p_lookups), float(i / p_lookups));
-        vec2 center = seen.center + extent * ((2.0 * part + 1.0) / parts - 1.0);
-        opacity += hidden(r, r.kernel * center / side, side, least, last) / (parts * parts);
+    for (int i = 0; i < parts.x * parts.y; i++) {
+        vec2 part = vec2(float(i % parts.x), float(i / parts.x));
+        vec2 center = seen.center + extent * ((2.0 * part + 1.0) / vec2(parts) - 1.0);
+        opacity += hidden(r, r.kernel * center / side, side, least, last);
     }
+    opacity /= float(parts.x * parts.y);
     return vec3(clamp(seen.share * (1.0 - opacity), 0.0, 1.0)); // rounding
 }

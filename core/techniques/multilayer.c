@@ -132,8 +132,9 @@ static const struct parameter parameters[] = {
                      .maximum = 1},
     [LOOKUPS] = {.name = "lookups",
                  .label = "Lookups",
-                 .description = "Parts that the light is cut into along each side, each looked up on its own in maps "
-                                "that are less blurred: more are truer where shadows overlap, and slower",
+                 .description = "Parts that the light is cut into along each side, a long one more along its length, "
+                                "each looked up on its own in maps that are less blurred: more are truer where "
+                                "shadows overlap, and slower",
                  .unit = "per side",
                  .type = PNB_INT,
                  .minimum = 1,
@@ -147,6 +148,9 @@ static const struct parameter parameters[] = {
                       .type = PNB_BOOL,
                       .maximum = 1},
     {0}};
+
+/* Along one axis of the emitter. */
+#define MOST_PARTS 16.0f
 
 static const char *multilayer_defines(const double *values) {
     return accumulation_define((int)values[LOOKUP_ACCUMULATION]);
@@ -162,14 +166,40 @@ static float light_size(const struct emitter *emitter) {
     return (emitter->ellipse ? 1.772f : 2.0f) * sqrtf(u * v);
 }
 
+/* How long the emitter is for its width, as texels of the map see it. */
+static float elongation(const struct frame_light *light) {
+    const struct emitter *emitter = &light->emitter;
+    float ratio = 1.0f;
+    if (emitter->type == PNB_LIGHT_AREA)
+        ratio = glm_vec3_norm((float *)emitter->half_u) / glm_vec3_norm((float *)emitter->half_v);
+    if (light->views.single)
+        ratio *= light->views.views[0].rect[2] / light->views.views[0].rect[3];
+    return ratio;
+}
+
+/* Parts along each of the emitter's axes: as many as for a square one at least, and about as long as wide, for filters
+ * are square. */
+static void cut_emitter(const struct frame_light *light, int parts[2]) {
+    const float ratio = elongation(light), longer = fmaxf(ratio, 1.0f / ratio);
+    const float lookups = (float)light->parameters[LOOKUPS];
+    const float across = fmaxf(roundf(lookups / sqrtf(longer) + 0.1f), 1.0f);
+    const float along = fmaxf(ceilf(lookups * lookups / across), floorf(longer));
+    const int longer_axis = ratio < 1.0f;
+    parts[longer_axis] = (int)fminf(along, MOST_PARTS);
+    parts[!longer_axis] = (int)across;
+}
+
 static pnb_result multilayer_prefilter(struct frame *frame, struct frame_light *light) {
     const double *values = light->parameters;
+    int parts[2];
+    cut_emitter(light, parts);
+    const float part_size = light_size(&light->emitter) / sqrtf((float)(parts[0] * parts[1]));
     const struct fragment_filter filter = {.level_count = (int)values[LEVELS],
                                            .stack_side = (int)values[PYRAMID] == Y_MAP ? (int)values[STACK_SIZE] : 0,
                                            .subsampled_levels = (int)values[BASE_SUBSAMPLING],
                                            .accumulation = (int)values[MERGE_ACCUMULATION],
                                            .merge_distance = (float)values[MERGE_DISTANCE],
-                                           .light_size = light_size(&light->emitter) / (float)values[LOOKUPS]};
+                                           .light_size = part_size};
     char what[128];
     snprintf(what, sizeof what, "MULTILAYER, surfaces before light '%.64s'", light->source->name);
     const struct fragment_choice choice = {.casters = CASTERS_ALL,
@@ -199,6 +229,9 @@ static void multilayer_bind(struct frame *frame, const struct frame_light *light
     }
     gl->Uniform4iv(gl->GetUniformLocation(program, "levels"), MAX_FRAGMENT_LEVELS, levels[0]);
     gl->Uniform1fv(gl->GetUniformLocation(program, "filter_widths"), MAX_FRAGMENT_LEVELS, widths);
+    GLint parts[2];
+    cut_emitter(light, parts);
+    gl->Uniform2iv(gl->GetUniformLocation(program, "parts"), 1, parts);
     program_set_int(gl, program, "level_count", (int)lists->level_count);
     fragment_lists_bind(gl, program, lists);
 }

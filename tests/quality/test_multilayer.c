@@ -117,6 +117,25 @@ static void shadows_are_antialiased(void) {
     test_scene_destroy(&test);
 }
 
+/* Filters are square, so a long light is cut into parts that nearly are. */
+static void long_lights_are_cut(void) {
+    struct test_scene *test = quality_scene("discs", TEST_LIGHT_RECTANGLE, 0, NAN);
+    pnb_scene scene = *test_scene_get(test);
+    pnb_light light = scene.lights[0];
+    scene.lights = &light;
+    light.size[0] *= 4;
+    light.size[1] /= 4;
+    pnb_settings settings = quality_scene_settings("REFERENCE", test, HEIGHT);
+    settings.light_samples = 16;
+    struct render truth = quality_render(&scene, &settings);
+    settings.technique = "MULTILAYER";
+    const double error = error_of(quality_render(&scene, &settings), &truth);
+    printf("discs under a light 16 times as long as wide: off by %.4f\n", error);
+    CHECK_AT_MOST(error, 0.03);
+    render_free(&truth);
+    test_scene_destroy(&test);
+}
+
 /* test_fragment_lists checks which faces are left out; here that the parameter does it. */
 static void back_faces_are_an_option(void) {
     struct render all = render_scene("tall-box", 0, "MULTILAYER", NULL, 0);
@@ -133,5 +152,6 @@ int main(void) {
     every_other_pixel_suffices();
     shadows_are_antialiased();
     back_faces_are_an_option();
+    long_lights_are_cut();
     return quality_close();
 }
