@@ -16,7 +16,7 @@ _TEXT_POINTS = 13
 def make_texture(width, height, pixels):
     """Texture of RGBA floats, a ctypes array."""
     buffer = gpu.types.Buffer('FLOAT', len(pixels), pixels)
-    return gpu.types.GPUTexture((width, height), format='RGBA32F', data=buffer)
+    return gpu.types.GPUTexture((width, height), format='RGBA16F', data=buffer)
 
 
 def draw_picture(texture, x, y, width, height):
