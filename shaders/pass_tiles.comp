@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each tile's bounds and plane for pass_classify.comp; and the box, in relative world space, of all that its pixels
-// cover between their depths. Light views are fitted to the boxes.
+// Each tile's bounds and plane for pass_classify.comp; and its nearest and farthest depth, since light views are fitted
+// to what it may show.
 #include "common_camera.glsl"
 #include "common_tile.glsl"
 
@@ -8,30 +8,14 @@ layout(local_size_x = 8, local_size_y = 8) in;
 uniform sampler2D gbuffer_depth, gbuffer_normal;
 uniform ivec2 tile_count;
 
-struct box {
-    float minimum[3], maximum[3]; // minimum > maximum: nothing seen
-};
-layout(std430, binding = 1) writeonly buffer box_block {
-    box boxes[];
+layout(std430, binding = 1) writeonly buffer range_block {
+    vec2 depths[]; // 0 at the far end: nothing seen
 };
 layout(std430, binding = 5) writeonly buffer tile_block {
     tile tiles[];
 };
 
 const float FAR = 3.4e38;
-
-// The corners of the piece of the view the tile cuts out between these depths.
-box view_box(ivec2 first, ivec2 last, float nearest, float farthest) {
-    vec3 minimum = vec3(FAR), maximum = vec3(-FAR);
-    if (farthest > 0.0)
-        for (int corner = 0; corner < 8; corner++) {
-            vec2 pixel = vec2((corner & 1) != 0 ? last.x : first.x, (corner & 2) != 0 ? last.y : first.y);
-            vec3 position = camera_position(pixel, (corner & 4) != 0 ? farthest : nearest);
-            minimum = min(minimum, position);
-            maximum = max(maximum, position);
-        }
-    return box(float[3](minimum.x, minimum.y, minimum.z), float[3](maximum.x, maximum.y, maximum.z));
-}
 
 void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
@@ -58,6 +42,6 @@ void main() {
         }
     t.normal.w = sqrt(deviation) + 1e-6;
     int index = at.y * tile_count.x + at.x;
-    boxes[index] = view_box(first, last, nearest, farthest);
+    depths[index] = vec2(nearest, farthest);
     tiles[index] = t;
 }

@@ -31,7 +31,7 @@ struct renderer {
     struct gpu_scene *scene;
     struct timer timer;
     GLuint framebuffer, empty_vertex_array, camera_buffer, light_buffer, tap_buffer;
-    GLuint box_buffer, tile_buffer, tile_visibility_buffer, tile_vertex_array;
+    GLuint range_buffer, tile_buffer, tile_visibility_buffer, tile_vertex_array;
     GLuint cursor_buffer; /* one number: the end of the fragments, fragment_lists.c */
     struct program_cache programs;
     struct kept kept;
@@ -65,9 +65,9 @@ void pass_end(struct frame *frame, uint64_t bytes);
 void camera_block_upload(struct frame *frame);
 /* Scene -> gbuffer_* of the frame's sample; whole: all of the full image, else only the crop. */
 pnb_result pass_gbuffer(struct frame *frame, bool whole);
-/* tiles.c: G-buffer -> box_buffer, tile_buffer: bounds of what each tile of the full image shows, relative world. */
+/* tiles.c: G-buffer -> range_buffer, tile_buffer: depths and bounds of what each tile of the full image shows. */
 pnb_result pass_tiles(struct frame *frame);
-/* box_buffer -> frame->receivers. */
+/* range_buffer -> frame->receivers. */
 pnb_result read_receivers(struct frame *frame);
 /* Tiles, min_max, planes -> tile_visibility_buffer: 0, 1 or undecided, for a technique with `technique_extent`. */
 pnb_result pass_classify(struct frame *frame, const struct frame_light *light);

@@ -2,27 +2,34 @@
 #include "../memory.h"
 #include "passes.h"
 
+#include <float.h>
+
 #define TILE       16   /* pixels per side, as in common_tile.glsl */
 #define UNDECIDED  0.5f /* visibility, as in pass_classify.comp */
 #define TILE_BYTES 48   /* of its struct tile */
+#define RANGE_BYTES (2 * sizeof(float))
 /* Tiles of the coarse boxes, per side of a group. */
 #define GROUP 8
 
-static bool is_empty(const struct box *box) {
-    return !(box->minimum[0] <= box->maximum[0]);
-}
-
-static void box_add(struct box *sum, const struct box *box) {
-    if (is_empty(sum)) {
-        *sum = *box;
-        return;
+/* What a tile cuts out of the view between its nearest and farthest depth. */
+static void tile_hull(const struct camera_block *camera, int column, int row, const float depths[2],
+                      struct hull *hull) {
+    for (int corner = 0; corner < 8; corner++) {
+        const float coordinate[2] = {fminf((float)(TILE * (column + (corner & 1))), camera->image[0]),
+                                     fminf((float)(TILE * (row + (corner >> 1 & 1))), camera->image[1])};
+        camera_position(camera, coordinate, depths[corner >> 2], hull->corners[corner]);
     }
-    glm_vec3_minv(sum->minimum, (float *)box->minimum, sum->minimum);
-    glm_vec3_maxv(sum->maximum, (float *)box->maximum, sum->maximum);
 }
 
-/* Splits the tiles into groups of GROUP x GROUP and keeps those with something in them. */
-static pnb_result gather(struct frame *frame, const struct box *tiles, int columns, int rows) {
+static void box_add(struct box *sum, const struct hull *hull) {
+    for (int corner = 0; corner < 8; corner++) {
+        glm_vec3_minv(sum->minimum, (float *)hull->corners[corner], sum->minimum);
+        glm_vec3_maxv(sum->maximum, (float *)hull->corners[corner], sum->maximum);
+    }
+}
+
+/* Hulls of the tiles with something in them, and boxes of groups of GROUP x GROUP tiles. */
+static pnb_result gather(struct frame *frame, const float (*depths)[2], int columns, int rows) {
     const int group_columns = (columns + GROUP - 1) / GROUP, group_rows = (rows + GROUP - 1) / GROUP;
     const size_t group_count = (size_t)group_columns * (size_t)group_rows;
     struct receivers *receivers = &frame->receivers;
@@ -31,18 +38,20 @@ static pnb_result gather(struct frame *frame, const struct box *tiles, int colum
     if (!receivers->tiles || !receivers->groups)
         return PNB_ERROR_OUT_OF_MEMORY;
     for (size_t i = 0; i < group_count; i++) {
-        struct box group = {{1, 0, 0}, {-1, 0, 0}};
+        struct box group = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+        const size_t before = receivers->tile_count;
         const int x0 = (int)(i % (size_t)group_columns) * GROUP, y0 = (int)(i / (size_t)group_columns) * GROUP;
         for (int y = y0; y < y0 + GROUP && y < rows; y++)
             for (int x = x0; x < x0 + GROUP && x < columns; x++) {
-                const struct box *tile = &tiles[y * columns + x];
-                if (is_empty(tile))
+                struct hull *tile = &receivers->tiles[receivers->tile_count];
+                if (!(depths[y * columns + x][1] > 0.0f))
                     continue;
-                receivers->tiles[receivers->tile_count++] = *tile;
+                tile_hull(&frame->camera, x, y, depths[y * columns + x], tile);
                 box_add(&group, tile);
+                receivers->tile_count++;
             }
-        if (!is_empty(&group))
-            receivers->groups[receivers->group_count++] = group;
+        if (receivers->tile_count > before)
+            hull_of_box(&group, &receivers->groups[receivers->group_count++]);
     }
     return PNB_OK;
 }
@@ -69,13 +78,13 @@ pnb_result pass_tiles(struct frame *frame) {
     int counts[2];
     tile_counts(renderer, counts);
     const size_t count = (size_t)counts[0] * (size_t)counts[1];
-    new_storage(gl, renderer->box_buffer, 1, count * sizeof(struct box));
+    new_storage(gl, renderer->range_buffer, 1, count * RANGE_BYTES);
     new_storage(gl, renderer->tile_buffer, 5, count * TILE_BYTES);
     bind_gbuffer(renderer, program);
     gl->Uniform2iv(gl->GetUniformLocation(program, "tile_count"), 1, counts);
     gl->DispatchCompute((GLuint)(counts[0] + 7) / 8, (GLuint)(counts[1] + 7) / 8, 1);
     gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
-    pass_end(frame, count * (sizeof(struct box) + TILE_BYTES));
+    pass_end(frame, count * (RANGE_BYTES + TILE_BYTES));
     return gl_check(gl, "tiles");
 }
 
@@ -84,15 +93,15 @@ pnb_result read_receivers(struct frame *frame) {
     int counts[2];
     tile_counts(frame->renderer, counts);
     const size_t count = (size_t)counts[0] * (size_t)counts[1];
-    struct box *boxes = memory_array(count, sizeof *boxes);
-    if (!boxes)
+    float(*depths)[2] = memory_array(count, sizeof *depths);
+    if (!depths)
         return PNB_ERROR_OUT_OF_MEMORY;
-    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, frame->renderer->box_buffer);
-    gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *boxes), boxes);
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, frame->renderer->range_buffer);
+    gl->GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(count * sizeof *depths), depths);
     pnb_result result = gl_check(gl, "receiver bounds");
     if (result == PNB_OK)
-        result = gather(frame, boxes, counts[0], counts[1]);
-    memory_free(boxes);
+        result = gather(frame, (const float(*)[2])depths, counts[0], counts[1]);
+    memory_free(depths);
     return result;
 }
 

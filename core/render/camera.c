@@ -24,6 +24,15 @@ void camera_block_init(struct camera_block *block, const struct scene_camera *ca
     block->image[3] = (float)settings->crop[1];
 }
 
+void camera_position(const struct camera_block *block, const float coordinate[2], float depth, vec3 position) {
+    const float scale = block->perspective != 0.0f ? depth : 1.0f;
+    float p[2];
+    for (int i = 0; i < 2; i++)
+        p[i] = scale * (block->window[i] + coordinate[i] / block->image[i] * block->window[2 + i]);
+    for (int i = 0; i < 3; i++)
+        position[i] = p[0] * block->axis_x[i] + p[1] * block->axis_y[i] - depth * block->axis_z[i];
+}
+
 void camera_projection(const struct camera_block *block, float near_depth, float far_depth, mat4 projection) {
     const float left = block->window[0], right = left + block->window[2];
     const float bottom = block->window[1], top = bottom + block->window[3];

@@ -77,9 +77,9 @@ void light_maps_free(const struct gl *gl, struct frame_light *light);
 void light_maps_move(struct frame_light *to, struct frame_light *from);
 uint64_t light_maps_bytes(const struct frame_light *light);
 
-/* Boxes of what the camera sees, see tiles.c: by tiles, and fewer for techniques that fit many views. */
+/* What the camera sees lies in these, see tiles.c: by tiles, and fewer for techniques that fit many views. */
 struct receivers {
-    struct box *tiles, *groups;
+    struct hull *tiles, *groups;
     size_t tile_count, group_count;
 };
 
@@ -112,6 +112,8 @@ struct frame {
 /* camera.c. Relative world to clip space of the sample, with planes around what is in view. */
 void camera_block_init(struct camera_block *block, const struct scene_camera *camera, const struct settings *settings,
                        uint32_t sample);
+/* As in common_camera.glsl: relative world position of a coordinate of the full image and a depth. */
+void camera_position(const struct camera_block *block, const float coordinate[2], float depth, vec3 position);
 void camera_projection(const struct camera_block *block, float near_depth, float far_depth, mat4 projection);
 
 #endif

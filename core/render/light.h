@@ -18,6 +18,13 @@ struct box {
     vec3 minimum, maximum;
 };
 
+/* Convex hull of eight points, relative world: a box, or what a piece of the image may show. */
+struct hull {
+    vec3 corners[8];
+};
+
+void hull_of_box(const struct box *box, struct hull *hull);
+
 struct emitter {
     pnb_light_type type;
     bool ellipse;          /* the emitter's outline is an ellipse or disk, not a rectangle */
@@ -57,7 +64,7 @@ struct light_views {
 };
 
 /* Fits views of map_size texels to the receivers that light can reach and the casters that can shadow them. */
-void light_views_fit(struct light_views *views, const struct emitter *emitter, const struct box *receivers,
+void light_views_fit(struct light_views *views, const struct emitter *emitter, const struct hull *receivers,
                      size_t receiver_count, const struct box *casters, size_t caster_count, int map_size);
 
 /* Whether views fitted before, to the same emitter and casters, still show what these must, about as finely. */

@@ -52,20 +52,20 @@ static void range_union(struct range *range, const struct range *other) {
     range->far_depth = fmaxf(range->far_depth, other->far_depth);
 }
 
-static void box_corner(const struct box *box, int corner, vec3 point) {
-    for (int i = 0; i < 3; i++)
-        point[i] = (corner >> i) & 1 ? box->maximum[i] : box->minimum[i];
+void hull_of_box(const struct box *box, struct hull *hull) {
+    for (int corner = 0; corner < 8; corner++)
+        for (int i = 0; i < 3; i++)
+            hull->corners[corner][i] = (corner >> i) & 1 ? box->maximum[i] : box->minimum[i];
 }
 
-/* Range of a box seen from a view, within +-limit. A perspective view sees only what is before the emitter; a box that
- * reaches behind it may appear anywhere. */
-static struct range box_range(const struct box *box, const struct light_view *view, float limit) {
+/* Range of a hull seen from a view, within +-limit. A perspective view sees only what is before the emitter; a hull
+ * that reaches behind it may appear anywhere. */
+static struct range hull_range(const struct hull *hull, const struct light_view *view, float limit) {
     struct range range = empty_range;
     bool behind = false;
     for (int corner = 0; corner < 8; corner++) {
         vec3 point;
-        box_corner(box, corner, point);
-        glm_mat4_mulv3((vec4 *)view->from_world, point, 1.0f, point);
+        glm_mat4_mulv3((vec4 *)view->from_world, (float *)hull->corners[corner], 1.0f, point);
         range.near_depth = fminf(range.near_depth, point[2]);
         range.far_depth = fmaxf(range.far_depth, point[2]);
         if (view->perspective == 0.0f)
@@ -94,7 +94,7 @@ static bool is_narrow_spot(const struct emitter *emitter) {
            fmaxf(emitter->cone_scale[0], emitter->cone_scale[1]) < 1.01f;
 }
 
-/* Where in a view of this limit a box of receivers can be lit. Those of a cube face lie within 45 degrees; its map
+/* Where in a view of this limit a hull of receivers can be lit. Those of a cube face lie within 45 degrees; its map
  * reaches further, for their kernels. Those of a spot lie in its cone, whose tip may lie beside the view's centre. */
 static float receiver_limit(const struct emitter *emitter, float limit, float near_depth) {
     if (limit == FACE_LIMIT)
@@ -105,11 +105,11 @@ static float receiver_limit(const struct emitter *emitter, float limit, float ne
     return 1.01f * tangent + (1.0f + tangent) * emitter->cone_offset / fmaxf(near_depth, 1e-6f);
 }
 
-static struct range receivers_range(const struct emitter *emitter, const struct box *boxes, size_t count,
+static struct range receivers_range(const struct emitter *emitter, const struct hull *hulls, size_t count,
                                     const struct light_view *view, float limit) {
     struct range sum = empty_range;
     for (size_t i = 0; i < count; i++) {
-        struct range range = box_range(&boxes[i], view, limit);
+        struct range range = hull_range(&hulls[i], view, limit);
         const float lit = receiver_limit(emitter, limit, range.near_depth);
         range_clip(&range, (vec2){-lit, -lit}, (vec2){lit, lit});
         if (!range_is_empty(&range))
@@ -128,12 +128,11 @@ static float kernel_extent(const struct emitter *emitter, float blocker, float r
     return half * fmaxf(1.0f / fmaxf(blocker, 1e-6f) - 1.0f / fmaxf(receiver, 1e-6f), 0.0f);
 }
 
-/* Whether a box lies behind an emitter that shines to one side only. */
-static bool is_behind(const struct box *box, const struct emitter *emitter) {
+/* Whether a hull lies behind an emitter that shines to one side only. */
+static bool is_behind(const struct hull *hull, const struct emitter *emitter) {
     for (int corner = 0; corner < 8; corner++) {
         vec3 point;
-        box_corner(box, corner, point);
-        glm_vec3_sub(point, (float *)emitter->position, point);
+        glm_vec3_sub((float *)hull->corners[corner], (float *)emitter->position, point);
         if (emitter->type != PNB_LIGHT_AREA || glm_vec3_dot(point, (float *)emitter->frame[2]) > 0.0f)
             return false;
     }
@@ -146,8 +145,10 @@ static struct range needed_range(const struct emitter *emitter, const struct lig
                                  float limit) {
     struct range needed = empty_range;
     for (size_t i = 0; i < caster_count; i++) {
-        struct range range = box_range(&casters[i], view, limit);
-        if (range_is_empty(&range) || range.near_depth >= receivers->far_depth || is_behind(&casters[i], emitter))
+        struct hull caster;
+        hull_of_box(&casters[i], &caster);
+        struct range range = hull_range(&caster, view, limit);
+        if (range_is_empty(&range) || range.near_depth >= receivers->far_depth || is_behind(&caster, emitter))
             continue;
         const float nearest = fmaxf(range.near_depth, NEAREST * receivers->far_depth);
         const float margin = kernel_extent(emitter, emitter->type == PNB_LIGHT_SUN ? range.near_depth : nearest,
@@ -161,7 +162,7 @@ static struct range needed_range(const struct emitter *emitter, const struct lig
 }
 
 /* Sets the view's rectangle and depth range; false if no caster can shadow a receiver in it. */
-static bool view_fit(struct light_view *view, const struct emitter *emitter, const struct box *receivers,
+static bool view_fit(struct light_view *view, const struct emitter *emitter, const struct hull *receivers,
                      size_t receiver_count, const struct box *casters, size_t caster_count, int map_size, float limit) {
     const struct range seen = receivers_range(emitter, receivers, receiver_count, view, limit);
     if (range_is_empty(&seen))
@@ -201,7 +202,7 @@ static void view_init(struct light_view *view, const struct emitter *emitter, in
 }
 
 /* Widest q of the receivers from the front: decides between one view and the faces of a cube. */
-static bool one_view_suffices(const struct emitter *emitter, const struct box *receivers, size_t count) {
+static bool one_view_suffices(const struct emitter *emitter, const struct hull *receivers, size_t count) {
     if (emitter->type == PNB_LIGHT_SUN)
         return true;
     if (emitter->type == PNB_LIGHT_POINT)
@@ -215,7 +216,7 @@ static bool one_view_suffices(const struct emitter *emitter, const struct box *r
                                       range.maximum[0] < SINGLE_VIEW_LIMIT && range.maximum[1] < SINGLE_VIEW_LIMIT);
 }
 
-void light_views_fit(struct light_views *views, const struct emitter *emitter, const struct box *receivers,
+void light_views_fit(struct light_views *views, const struct emitter *emitter, const struct hull *receivers,
                      size_t receiver_count, const struct box *casters, size_t caster_count, int map_size) {
     *views = (struct light_views){.single = one_view_suffices(emitter, receivers, receiver_count)};
     views->clip_behind = emitter->type == PNB_LIGHT_AREA && !views->single;

@@ -19,7 +19,7 @@ pnb_result renderer_create(const struct gl *gl, struct renderer **out) {
     gl->GenVertexArrays(1, &renderer->empty_vertex_array);
     gl->GenVertexArrays(1, &renderer->tile_vertex_array);
     GLuint *const buffers[] = {&renderer->camera_buffer, &renderer->light_buffer, &renderer->tap_buffer,
-                               &renderer->box_buffer,    &renderer->tile_buffer,  &renderer->tile_visibility_buffer,
+                               &renderer->range_buffer,  &renderer->tile_buffer,  &renderer->tile_visibility_buffer,
                                &renderer->cursor_buffer};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++)
         gl->GenBuffers(1, buffers[i]);
@@ -48,7 +48,7 @@ void renderer_destroy(struct renderer **out) {
     gl->DeleteVertexArrays(1, &renderer->empty_vertex_array);
     gl->DeleteVertexArrays(1, &renderer->tile_vertex_array);
     const GLuint buffers[] = {renderer->camera_buffer, renderer->light_buffer, renderer->tap_buffer,
-                              renderer->box_buffer,    renderer->tile_buffer,  renderer->tile_visibility_buffer,
+                              renderer->range_buffer,  renderer->tile_buffer,  renderer->tile_visibility_buffer,
                               renderer->cursor_buffer};
     gl->DeleteBuffers(sizeof buffers / sizeof *buffers, buffers);
     gl_buffer_free(gl, &renderer->pixel_list);

@@ -177,9 +177,9 @@ static pnb_result make_pyramid(struct frame *frame, struct essm *essm, float gre
         (result = pass_begin(frame, "Exponential pyramid")) != PNB_OK)
         return result;
     memset(greatest, 0, MAX_LEVELS * sizeof *greatest);
-    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, renderer->box_buffer);
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, renderer->range_buffer);
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, MAX_LEVELS * sizeof *greatest, greatest, GL_STREAM_READ);
-    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, renderer->box_buffer);
+    gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, renderer->range_buffer);
     for (essm->level = 1; essm->level <= essm->pyramid.levels; essm->level++) {
         const GLuint groups = (GLuint)((essm->pyramid.width >> (essm->level - 1)) + 7) / 8;
         bind_basis(frame, program, essm);

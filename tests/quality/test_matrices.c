@@ -103,7 +103,9 @@ static void fit_around(const struct emitter *emitter, bool wide, struct light_vi
         room.minimum[i] = center - side;
         room.maximum[i] = center + side;
     }
-    light_views_fit(views, emitter, &room, 1, &room, 1, 1024);
+    struct hull receivers;
+    hull_of_box(&room, &receivers);
+    light_views_fit(views, emitter, &receivers, 1, &room, 1, 1024);
 }
 
 /* The documented directions of the faces, in the emitter's frame. */

@@ -61,7 +61,9 @@ static void faces_cover_all_directions_once(void) {
     struct light_views views;
     emitter_init(&emitter, &light, (const vec3){0, 0, 0});
     const struct box room = {{-10, -10, -10}, {10, 10, 10}};
-    light_views_fit(&views, &emitter, &room, 1, &room, 1, 512);
+    struct hull receivers;
+    hull_of_box(&room, &receivers);
+    light_views_fit(&views, &emitter, &receivers, 1, &room, 1, 512);
     CHECK_INT(views.count, 6);
     CHECK(!views.single);
     double crooked = 0;
@@ -235,13 +237,15 @@ static void blockers_lie_in_the_view(pnb_light_type type, const char *name) {
         struct emitter emitter;
         struct light_views views;
         struct box receivers[4], casters[4];
+        struct hull hulls[4];
         random_light(type, &light);
         emitter_init(&emitter, &light, (const vec3){0, 0, 0});
         for (int k = 0; k < 4; k++) {
             random_box(&receivers[k]);
             random_box(&casters[k]);
+            hull_of_box(&receivers[k], &hulls[k]);
         }
-        light_views_fit(&views, &emitter, receivers, 4, casters, 4, 1024);
+        light_views_fit(&views, &emitter, hulls, 4, casters, 4, 1024);
         for (int k = 0; k < 400; k++) {
             vec3 receiver, point, blocker;
             point_in_box(&receivers[k % 4], receiver);
