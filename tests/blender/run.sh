@@ -42,9 +42,11 @@ fi
 if [ $window != no ]; then
     # Blender with a window always ends with 0: the tests write what they found.
     mkdir "$work/display"
+    width=640 height=480
+    [ "${1-}" != latency ] || { width=960; height=540; }
     export TEST_DISPLAY="$work/display"
-    xvfb-run -a -s "-screen 0 640x480x24 -nocursor -fbdir $work/display" "$blender" --factory-startup -p 0 0 640 480 \
-        --python "$here/window/run_tests.py" -- "$@"
+    xvfb-run -a -s "-screen 0 ${width}x${height}x24 -nocursor -fbdir $work/display" "$blender" \
+        --factory-startup -p 0 0 $width $height --python "$here/window/run_tests.py" -- "$@"
     [ "$(cat "$work/output/window-status")" = 0 ] || status=1
 fi
 exit $status

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs inside Blender with a window: all tests of this folder, or those named after `--`. A test that is a generator
-gives control back to Blender's event loop at each `yield`: nothing is drawn meanwhile otherwise."""
+gives control back to Blender's event loop at each `yield`, with 'soon' for less time: nothing is drawn meanwhile
+otherwise."""
 
 import os
 import sys
@@ -15,7 +16,7 @@ ADDON = os.environ['TEST_ADDON']
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [FOLDER, os.path.dirname(FOLDER)]
 # Seconds between two looks at a test that waits.
-STEP = 0.02
+STEP, SOON = 0.02, 0.005
 
 
 def tests_of(suite):
@@ -70,10 +71,11 @@ def main():
     steps = run_all(list(tests_of(suite)))
 
     def step():
-        if next(steps, 'end') != 'end':
-            return STEP
-        bpy.ops.wm.quit_blender()
-        return None
+        what = next(steps, 'end')
+        if what == 'end':
+            bpy.ops.wm.quit_blender()
+            return None
+        return SOON if what == 'soon' else STEP
     bpy.app.timers.register(step, first_interval=0.5, persistent=True)
 
 
