@@ -34,10 +34,7 @@ class _EmissionReader:
     def radiance(self, source):
         if source.output is None:
             return [0.0] * 3
-        key = source.key()
-        if key not in self._known:
-            self._known[key] = self._read(source)
-        return self._known[key]
+        return nodes.read_once(self._known, source, self._read)
 
     def _read(self, source):
         node = source.output.node

@@ -3,7 +3,7 @@
 
 from typing import NamedTuple
 
-from . import images, textures, uvs, values
+from . import images, nodes, textures, uvs, values
 from .names import name_of
 
 
@@ -99,12 +99,7 @@ class FeedReader:
 
     def _textured(self, source):
         """The Feed of an input with a texture somewhere behind it, or None."""
-        if source.output is None:
-            return None
-        key = source.key()
-        if key not in self._known:
-            self._known[key] = self._read(source)
-        return self._known[key]
+        return source.output and nodes.read_once(self._known, source, self._read)
 
     def _read(self, source):
         node = source.output.node

@@ -19,6 +19,14 @@ class Source(NamedTuple):
         return self.output, self.groups
 
 
+def read_once(known, source, read):
+    """`read(source)`, called the first time that its output is asked for; `known`: a dictionary for the results."""
+    key = source.key()
+    if key not in known:
+        known[key] = read(source)
+    return known[key]
+
+
 def follow(socket, groups=()):
     while socket is not None:
         link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)

@@ -70,10 +70,7 @@ class _SurfaceReader:
         """A Surface of the caller's own; what is linked to several shaders is read once."""
         if source.output is None:
             return Surface(color=list(BLACK))
-        key = source.key()
-        if key not in self._known:
-            self._known[key] = self._read(source)
-        return replace(self._known[key])
+        return replace(nodes.read_once(self._known, source, self._read))
 
     def _read(self, source):
         node = source.output.node

@@ -4,6 +4,8 @@
 import colorsys
 import math
 
+from .nodes import read_once
+
 
 class _Varies(Exception):
     """A value that is not constant."""
@@ -49,10 +51,7 @@ class _Evaluation:
     def value(self, source, default=0.0):
         if source.output is None:
             return own(source, default)
-        key = source.key()
-        if key not in self._known:
-            self._known[key] = self._node(source)
-        value = self._known[key]
+        value = read_once(self._known, source, self._node)
         if value is None:
             raise _Varies
         return value
