@@ -48,10 +48,11 @@ def _candidates(scene):
     if render.engine != 'PENUMBRA':
         return
     each = render.use_multiview and render.image_settings.views_format == 'INDIVIDUAL'
-    still = bpy.path.abspath(render.filepath).removesuffix(render.file_extension)
+    extension = render.file_extension if render.use_file_extension else ""
+    still = bpy.path.abspath(render.filepath).removesuffix(extension)
     for view in [view for view in render.views if view.use] if each else [None]:
         yield render.frame_path(frame=scene.frame_current, view=view.name if view else "")
-        yield still + (view.file_suffix if view else "") + render.file_extension
+        yield still + (view.file_suffix if view else "") + extension
 
 
 def _written(paths):

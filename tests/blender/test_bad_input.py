@@ -299,12 +299,13 @@ class BadInput(SceneTest):
                 self.assert_not_written(blend, folder + '/frame_', kind)
                 self.assertEqual(os.listdir(folder), ['filler'])
         self.scene.render.image_settings.file_format = 'PNG'
-        self.scene.render.filepath = folder + '/here.png'
         failures = sys.modules[ADDON].output.failures
         self.addCleanup(failures.clear)     # else this Blender would end with status 1
-        with contextlib.suppress(RuntimeError):
-            bpy.ops.render.render(write_still=True)
-        self.assertFalse(os.path.exists(folder + '/here.png'))
+        for has_extension, name in ((False, 'bare'), (True, 'here.png')):
+            self.scene.render.use_file_extension, self.scene.render.filepath = has_extension, f'{folder}/{name}'
+            with contextlib.suppress(RuntimeError):
+                bpy.ops.render.render(write_still=True)
+            self.assertEqual(os.listdir(folder), ['filler'])
         os.remove(folder + '/filler')
         bpy.ops.render.render(write_still=True)
         self.assertGreater(os.path.getsize(folder + '/here.png'), 100)
