@@ -114,11 +114,11 @@ class FeedReader:
     def _changed(self, source):
         """A texture that goes through a node: exact where that multiplies it, else the texture as it is."""
         node = source.output.node
-        for number in _kept_inputs(source):
+        for number in _kept_inputs(source, self._constant_leaf):
             feed = self._textured(source.input(number))
             if not feed:
                 continue
-            factor = _factor(source, number)
+            factor = _factor(source, number, self._constant_leaf)
             if factor:
                 return feed._replace(value=[a * b for a, b in zip(feed.value, factor)])
             name = name_of(feed.picture.image) if feed.picture else feed.attribute
@@ -137,30 +137,36 @@ class FeedReader:
                        uv_map, matrix)
 
 
-def _kept_inputs(source):
-    """Numbers of the inputs whose texture is kept, the best first: of mixed colours the heavier, never the factor."""
+def _kept_inputs(source, leaf):
+    """Numbers of the inputs whose texture is kept, the best first: of mixed colours the heavier, never the factor.
+    `leaf`: see values.constant."""
     node = source.output.node
     mixed = values.mixed_inputs(node)
     if not mixed:
         return range(len(node.inputs))
-    share = values.constant(source.input(mixed[0]), 0.5)
-    return reversed(mixed[1:]) if share is not None and values.number(share) > 0.5 else mixed[1:]
+    share = values.constant(source.input(mixed[0]), 0.5, leaf)
+    if share is None:
+        return mixed[1:]
+    only = values.only_input(node, values.number(share))
+    return (only,) if only else reversed(mixed[1:]) if values.number(share) > 0.5 else mixed[1:]
 
 
-def _factor(source, number):
+def _factor(source, number, leaf):
     """The colour that a node multiplies one of its inputs with; None if it does anything else."""
     node = source.output.node
     if node.type == 'MATH':
         if node.operation != 'MULTIPLY' or node.use_clamp or number > 1 or source.socket.type == 'RGBA':
             return None
-        other = values.constant(source.input(1 - number), 0.5)
+        other = values.constant(source.input(1 - number), 0.5, leaf)
         return other if other is None else [values.number(other)] * 3
     mixed = values.mixed_inputs(node)
-    if not mixed or not values.blends(node, 'MULTIPLY'):
-        return None
-    share, other = (values.constant(source.input(key), 0.5)
-                    for key in (mixed[0], mixed[2] if number == mixed[1] else mixed[1]))
-    if share is None or other is None or number == mixed[2] and values.number(share) < 1.0:
+    share = mixed and values.constant(source.input(mixed[0]), 0.5, leaf)
+    if share is None:
         return None
     share = min(max(values.number(share), 0.0), 1.0)
+    if number == values.only_input(node, share):
+        return [1.0] * 3
+    other = values.constant(source.input(mixed[2] if number == mixed[1] else mixed[1]), 0.5, leaf)
+    if other is None or not values.blends(node, 'MULTIPLY') or number == mixed[2] and share < 1.0:
+        return None
     return [1.0 - share + share * channel for channel in values.color(other)]

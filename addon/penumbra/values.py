@@ -130,17 +130,20 @@ def _blended(kind, first, second, share):
 
 
 def _mix_rgb(node, inputs, _output):
-    mixed = _blended(node.blend_type, inputs.color(1), inputs.color(2), _clamped(inputs.number(0)))
+    share = _clamped(inputs.number(0))
+    only = only_input(node, share)
+    mixed = inputs.color(only) if only else _blended(node.blend_type, inputs.color(1), inputs.color(2), share)
     return [*(map(_clamped, mixed) if node.use_clamp else mixed), 1.0]
 
 
 def mixed_inputs(node):
-    """Numbers of the inputs of a Mix node, of either kind: factor, first, second; None for others."""
+    """Numbers of the inputs of a Mix node, of either kind: factor, first, second; None for others, and for one with a
+    factor for each number."""
     if node.type == 'MIX_RGB':
         return 0, 1, 2
-    if node.type != 'MIX' or node.data_type not in _MIX_INPUTS:
+    if node.type != 'MIX' or node.data_type == 'VECTOR' and node.factor_mode != 'UNIFORM':
         return None
-    return _MIX_INPUTS[node.data_type]
+    return _MIX_INPUTS.get(node.data_type)
 
 
 def blends(node, kind):
@@ -148,20 +151,30 @@ def blends(node, kind):
     return node.blend_type == kind and (node.type == 'MIX_RGB' or node.data_type == 'RGBA')
 
 
+def only_input(node, share):
+    """The number of the input that a Mix node passes on as it is at this factor; None where it needs both."""
+    _factor, first, second = mixed_inputs(node)
+    if share == 0.0:
+        return first
+    is_plain = node.type == 'MIX' and node.data_type != 'RGBA' or node.blend_type == 'MIX'
+    return second if share == 1.0 and is_plain else None
+
+
 _MIX_INPUTS = {'FLOAT': (0, 2, 3), 'VECTOR': (0, 4, 5), 'RGBA': (0, 6, 7)}
 
 
 def _mix(node, inputs, _output):
-    if node.data_type not in _MIX_INPUTS or node.data_type == 'VECTOR' and node.factor_mode != 'UNIFORM':
+    if mixed_inputs(node) is None:
         raise _Varies
-    factor, first, second = _MIX_INPUTS[node.data_type]
+    factor, first, second = mixed_inputs(node)
     share = inputs.number(factor)
     share = _clamped(share) if node.clamp_factor else share
+    only = only_input(node, share)
     if node.data_type == 'FLOAT':
-        return _mixed([inputs.number(first)], [inputs.number(second)], share)[0]
+        return inputs.number(only) if only else _mixed([inputs.number(first)], [inputs.number(second)], share)[0]
     if node.data_type == 'VECTOR':
-        return _mixed(inputs.color(first), inputs.color(second), share)
-    mixed = _blended(node.blend_type, inputs.color(first), inputs.color(second), share)
+        return inputs.color(only) if only else _mixed(inputs.color(first), inputs.color(second), share)
+    mixed = inputs.color(only) if only else _blended(node.blend_type, inputs.color(first), inputs.color(second), share)
     return [*(map(_clamped, mixed) if node.clamp_result else mixed), 1.0]
 
 

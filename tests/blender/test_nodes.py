@@ -166,6 +166,20 @@ class Kept(SceneTest):
         for a, e in zip(surface.color, (0.75, 1.0, 0.5)):
             self.assertAlmostEqual(a, e, places=6)
 
+    def test_one_side_alone(self):
+        """Of a Mix node whose factor is 0 or 1 only one side counts, and there is nothing to say."""
+        for factor, sides, blend, kept in ((0.0, 'image first', 'ADD', True), (1.0, 'image second', 'MIX', True),
+                                           (1.0, 'image first', 'MIX', False), (0.0, 'image second', 'SCREEN', False)):
+            with self.subTest(factor=factor, sides=sides):
+                tree = Tree()
+                pair = (tree.image(), COLOR) if sides == 'image first' else (COLOR, tree.image())
+                tree.surface(tree.add('BsdfDiffuse', tree.add('MixRGB', factor, *pair, blend_type=blend).outputs[0])
+                             .outputs[0])
+                surface, lines = tree.read()
+                self.assertEqual((bool(surface.color_image), lines), (kept, []))
+                for a, e in zip(surface.color, (1.0, 1.0, 1.0) if kept else COLOR):
+                    self.assertAlmostEqual(a, e, places=6)
+
     def test_heavier_image(self):
         for factor, name in ((0.2, "First"), (0.8, "Second")):
             tree = Tree()
