@@ -5,11 +5,13 @@ uniform float p_c;
 uniform int p_depth_range;
 const int RANGE_MAP = 0, RANGE_BOUNDS = 1;
 
-// Map depth of t = 0. The far end needs no search: a view's far plane lies just behind the farthest receiver.
-float exponential_start(int layer) {
-    if (p_depth_range == RANGE_BOUNDS)
-        return 0.0;
-    return min(texelFetch(min_max, ivec3(0, 0, layer), textureQueryLevels(min_max) - 1).r, 1.0 - 1e-6);
+// Map depth of t = 0 in the layer of exponential_create. The far end needs no search: a view's far plane lies just
+// behind the farthest receiver.
+float exponential_start;
+
+void exponential_create(int layer) {
+    float nearest = texelFetch(min_max, ivec3(0, 0, layer), textureQueryLevels(min_max) - 1).r;
+    exponential_start = p_depth_range == RANGE_BOUNDS ? 0.0 : min(nearest, 1.0 - 1e-6);
 }
 
 // Depth of a texel. NaN, which would spread over all sums and means, counts as nothing there. By its bits, since
@@ -19,7 +21,6 @@ float clean_depth(float depth) {
 }
 
 // t of a map depth.
-float exponential_depth(float depth, int layer) {
-    float start = exponential_start(layer);
-    return (depth - start) / (1.0 - start);
+float exponential_depth(float depth) {
+    return (depth - exponential_start) / (1.0 - exponential_start);
 }

@@ -17,7 +17,7 @@ float map_depth(ivec2 texel, int layer) {
 vec4 essm_basis(ivec3 texel, int at_level) {
     if (at_level > 0)
         return texelFetch(pyramid, texel, at_level - 1);
-    float t = exponential_depth(map_depth(texel.xy, texel.z), texel.z);
+    float t = exponential_depth(map_depth(texel.xy, texel.z));
     return vec4(1.0, t, t, t);
 }
 
@@ -42,5 +42,5 @@ float linear_to_depth(float value, int layer) {
 // t of a tile's plane at an offset from the tile's centre, texels of the map.
 float plane_t(vec4 plane, vec2 offset, int layer) {
     float depth = linear_to_depth(plane.x + dot(plane.yz, offset), layer);
-    return exponential_depth(clamp(depth, -1.0, 4.0), layer) + abs(plane.w);
+    return exponential_depth(clamp(depth, -1.0, 4.0)) + abs(plane.w);
 }

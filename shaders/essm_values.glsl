@@ -11,9 +11,13 @@ vec3 robust_value(ivec3 texel) {
     ivec2 tile = texel.xy >> tile_log, at = (texel.xy << level) + (1 << level) / 2;
     vec2 center = (vec2(tile) + 0.5) * float(1 << (tile_log + level));
     vec4 plane = texelFetch(tile_planes, ivec3(tile, texel.z), level);
-    float t = exponential_depth(map_depth(at, texel.z), texel.z);
+    float t = exponential_depth(map_depth(at, texel.z));
     float esm = exp(p_c * (t - plane_t(plane, vec2(at) + 0.5 - center, texel.z)));
     return vec3(esm, esm * t, t);
+}
+
+void summed_create(int layer) {
+    exponential_create(layer);
 }
 
 vec4 summed_value(ivec3 texel) {

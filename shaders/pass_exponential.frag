@@ -7,6 +7,7 @@ uniform int layer;
 layout(location = 0) out float out_exponential;
 
 void main() {
+    exponential_create(layer);
     float depth = clean_depth(texelFetch(shadow_map, ivec3(gl_FragCoord.xy, layer), 0).r);
-    out_exponential = exp(p_c * exponential_depth(depth, layer));
+    out_exponential = exp(p_c * exponential_depth(depth));
 }

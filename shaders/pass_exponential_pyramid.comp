@@ -24,6 +24,7 @@ void main() {
     ivec3 texel = ivec3(gl_GlobalInvocationID);
     if (any(greaterThanEqual(texel.xy, imageSize(target).xy)))
         return;
+    exponential_create(texel.z);
     ivec3 first = ivec3(2 * texel.xy, texel.z);
     vec4 value = join(essm_basis(first, level - 1), essm_basis(first + ivec3(1, 0, 0), level - 1),
                       essm_basis(first + ivec3(0, 1, 0), level - 1), essm_basis(first + ivec3(1, 1, 0), level - 1));

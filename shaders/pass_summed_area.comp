@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Summed-area tables of CHANNELS (1 or 2) values per texel, `vec4 summed_value(ivec3 texel)` of the included file. A
-// table holds at each texel the sum of what lies left of, below and at it within its tile. Stored as 32-bit integers:
-// sums of round(value * scale) that wrap around, or with FLOATS the bits of floats.
+// Summed-area tables of CHANNELS (1 or 2) values per texel, `vec4 summed_value(ivec3 texel)` of the included file, after
+// its `void summed_create(int layer)`. A table holds at each texel the sum of what lies left of, below and at it within
+// its tile. Stored as 32-bit integers: sums of round(value * scale) that wrap around, or with FLOATS the bits of floats.
 // STEP 0: tables of blocks of 64 x 64, or of smaller tiles. STEP 1, 2: larger tiles, by adding to each block what lies
 // left of it, then what lies below.
 
@@ -49,6 +49,7 @@ void main() {
     ivec2 corner = ivec2(gl_WorkGroupID.xy) * 64;
     int layer = int(gl_WorkGroupID.z), thread = int(gl_LocalInvocationIndex);
     VALUE sum = VALUE(0);
+    summed_create(layer);
     for (int x = 0; x < 64; x++) {
         ivec2 texel = corner + ivec2(x, thread);
         sum = (x & (tile - 1)) == 0 ? VALUE(0) : sum;

@@ -16,6 +16,7 @@ shared float values[64];  // of their depths, depth_to_linear
 shared float behind[64];
 shared bool empties[64];
 shared int score[64];
+shared vec3 chosen; // of the candidates, or what is taken where none is good
 
 // Of 64 samples, those that make a plane, and those that may lie behind it.
 const int LEAST_SUPPORT = 4, MOST_BEHIND = 1;
@@ -25,11 +26,11 @@ float distance_behind(vec3 plane, int i, int layer) {
 }
 
 // Least squares over the samples near a plane: its slopes come from two texels and carry their rounding far.
-vec3 fit(vec3 plane, int layer) {
+vec3 fit(vec3 plane, int sample_count, int layer) {
     mat3 sum = mat3(0.0);
     vec3 right = vec3(0.0);
     float side = float((1 << tile_log) << level);
-    for (int i = 0; i < 64; i++) {
+    for (int i = 0; i < sample_count; i++) {
         if (abs(distance_behind(plane, i, layer)) >= 0.5)
             continue;
         vec3 row = vec3(1.0, samples[i].xy / side);
@@ -43,6 +44,7 @@ vec3 fit(vec3 plane, int layer) {
 void main() {
     int thread = int(gl_LocalInvocationIndex), layer = int(gl_WorkGroupID.z);
     int tile = 1 << tile_log, side = tile << level;
+    exponential_create(layer);
     ivec2 corner = ivec2(gl_WorkGroupID.xy) * side;
     if (any(greaterThanEqual(corner, textureSize(shadow_map, 0).xy)))
         return;
@@ -54,12 +56,13 @@ void main() {
     vec2 slope = (vec2(depth_to_linear(map_depth(texel + ivec2(reach, 0), layer), layer),
                        depth_to_linear(map_depth(texel + ivec2(0, reach), layer), layer)) - value) / float(reach);
     candidates[thread] = vec3(value - dot(slope, offset), slope);
-    samples[thread] = vec3(offset, exponential_depth(depth, layer));
+    samples[thread] = vec3(offset, exponential_depth(depth));
     values[thread] = value;
     barrier();
     int support = 0, farther = 0;
+    vec3 candidate = candidates[thread];
     for (int i = 0; i < 64; i++) {
-        float distance = distance_behind(candidates[thread], i, layer);
+        float distance = distance_behind(candidate, i, layer);
         support += int(abs(distance) < 0.5);
         farther += int(distance >= 0.5 && samples[i].z < 1.0);
     }
@@ -68,14 +71,18 @@ void main() {
     int best = 0;
     for (int i = 1; i < 64; i++)
         best = score[i] > score[best] ? i : best;
-    bool planar = score[best] >= 0;
-    vec4 plane = vec4(planar ? fit(candidates[best], layer) : vec3(depth_to_linear(0.0, layer), vec2(0.0)), 0.0);
+    // One thread fits. The others go through its loop once: what is behind a branch alone takes its time in software.
+    vec3 fitted = fit(candidates[best], thread == 0 ? 64 : 0, layer);
+    if (thread == 0)
+        chosen = score[best] >= 0 ? fitted : vec3(depth_to_linear(0.0, layer), vec2(0.0));
+    barrier();
+    vec4 plane = vec4(chosen, 0.0);
     float greatest = 0.0;
     bool empty = false;
     for (int i = thread; i < tile * tile; i += 64) {
         ivec2 at = corner + (ivec2(i & (tile - 1), i >> tile_log) << level) + (1 << level) / 2;
         vec2 from_center = vec2(at) + 0.5 - center;
-        float t = exponential_depth(map_depth(at, layer), layer);
+        float t = exponential_depth(map_depth(at, layer));
         greatest = t < 1.0 ? max(greatest, t - plane_t(plane, from_center, layer)) : greatest;
         empty = empty || t >= 1.0;
     }

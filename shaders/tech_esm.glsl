@@ -12,7 +12,7 @@ const int CLASSIFY_NONE = 0, CLASSIFY_ZMAX = 1, CLASSIFY_THRESHOLD = 2;
 
 // t of a light-space depth.
 float receiver_depth(receiver r, float depth) {
-    return exponential_depth((depth - r.near_depth) / r.depth_span, r.layer);
+    return exponential_depth((depth - r.near_depth) / r.depth_span);
 }
 
 // The ellipse of a pixel's footprint on the map.
@@ -66,7 +66,7 @@ vec2 filter_extent(ellipse e) {
 vec2 exponent_slope(receiver r) {
     float along = is_perspective() ? dot(r.normal, r.position) / r.position.z : r.normal.z;
     vec2 change = r.slope * (is_perspective() ? r.position.z : 1.0) / max(-along, 1e-6);
-    return p_c * change / ((1.0 - exponential_start(r.layer)) * r.depth_span);
+    return p_c * change / ((1.0 - exponential_start) * r.depth_span);
 }
 
 // What convolution and linear interpolation make of the receiver's own plane. The exponential is convex, so that a
@@ -82,7 +82,7 @@ float lit_value(receiver r, vec2 slope) {
 // exponential may exceed 1. Z_MAX compares with the farthest point of the receiver's tangent plane inside the filter:
 // compared with the receiver itself, as in the paper, either all slopes fail or the offset hides real failures.
 bool fails(receiver r, ellipse e, vec2 slope, float visibility) {
-    float offset = p_zmax_offset * (1.0 - exponential_start(r.layer)) * r.depth_span;
+    float offset = p_zmax_offset * (1.0 - exponential_start) * r.depth_span;
     vec2 extent = filter_extent(e);
     vec4 covered = depth_range_cover(r, extent);
     vec2 farthest = mix(covered.xy, covered.zw, greaterThan(r.slope, vec2(0.0)));
@@ -110,6 +110,7 @@ float contact_leak(receiver r, float d) {
 vec3 technique_visibility(receiver r) {
     if (any(lessThan(r.center, vec2(0.0))) || any(greaterThanEqual(r.center, vec2(r.map_size))))
         return vec3(1.0);
+    exponential_create(r.layer);
     ellipse e = footprint_ellipse(receiver_footprint(r));
     float d = receiver_depth(r, r.position.z);
     vec2 slope = exponent_slope(r);

@@ -26,7 +26,8 @@ const float SLACK = 0.02;
 float exponent_scale, exponent_offset; // c t of a light-space depth is depth * scale + offset
 
 void exponent_create(receiver r) {
-    float start = exponential_start(r.layer);
+    exponential_create(r.layer);
+    float start = exponential_start;
     exponent_scale = p_c / ((1.0 - start) * r.depth_span);
     exponent_offset = -exponent_scale * (r.near_depth + start * r.depth_span);
 }
