@@ -114,9 +114,9 @@ OPACITY opacity_above(receiver r, float height, float depth, float width, OPACIT
 }
 
 // Adds the fragments of one texel: nearer to the light than the level's own depth to `lower`, since there this level is
-// the lower of two, farther to `upper`.
+// the lower of two, farther to `upper`. overlap: of both, the product.
 void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, float weight, inout share lower,
-             inout share upper) {
+             inout share upper, inout OPACITY overlap) {
     ivec4 l = levels[level];
     if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(l.y))))
         return;
@@ -147,11 +147,12 @@ void look_up(receiver r, int level, ivec2 texel, level_depths d, float side, flo
     lower.weight += weight * near.weight;
     upper.opacity += weight * far.opacity;
     upper.weight += weight * far.weight;
+    overlap += weight * near.opacity * far.opacity;
 }
 
 // The four texels around a place on the map.
 void look_up_bilinear(receiver r, vec2 center, int level, level_depths d, float side, out share lower,
-                      out share upper) {
+                      out share upper, out OPACITY overlap) {
     ivec4 l = levels[level];
     vec2 corner = center * exp2(-float(l.z)) + (l.w < 0 ? -0.5 : float(l.w));
     vec2 f = fract(corner);
@@ -166,8 +167,9 @@ void look_up_bilinear(receiver r, vec2 center, int level, level_depths d, float 
     float sum = above.x + above.y + above.z + above.w;
     w = sum > 0.0 ? above / sum : w;
     lower = upper = nothing();
+    overlap = OPACITY(0.0);
     for (int i = 0; i < 4; i++)
-        look_up(r, level, texel + ivec2(i & 1, i >> 1), d, side, w[i], lower, upper);
+        look_up(r, level, texel + ivec2(i & 1, i >> 1), d, side, w[i], lower, upper, overlap);
 }
 
 // The first level whose filter is as wide as the widest kernel of any caster around; -1: nothing shadows the receiver.
@@ -189,12 +191,23 @@ int last_level(receiver r, float side, float least) {
     return level;
 }
 
+// Adds what the next two levels hide, `own`, to the sum; what the two before them hid is `before`. Of a surface that
+// passes from these to those the level they share has some texels in each: they lie side by side, not one behind the
+// other. meeting: share of what would be one behind the other by chance that is so in that level.
+OPACITY add_nearer(OPACITY sum, OPACITY own, OPACITY meeting, inout OPACITY before) {
+    if (ACCUMULATION != MULTIPLY)
+        return accumulate(sum, own);
+    OPACITY passing = 1.0 - own * (1.0 - meeting * before) / max(1.0 - before, OPACITY(1e-6));
+    before = own;
+    return 1.0 - (1.0 - sum) * clamp(passing, OPACITY(0.0), OPACITY(1.0));
+}
+
 // What hides a part of the emitter. aside: where the centre of its kernel lies, in widths of the kernel.
 OPACITY hidden(receiver r, vec2 aside, float side, float least, int last) {
     float facing = abs(is_perspective() ? dot(r.normal, normalize(r.position)) : r.normal.z);
     float texel = r.texel_size * (is_perspective() ? r.position.z : 1.0) * sqrt(max(1.0 - facing * facing, 0.0));
     float plane = r.plane;
-    OPACITY opacity = OPACITY(0.0);
+    OPACITY opacity = OPACITY(0.0), before = OPACITY(0.0), meeting = OPACITY(1.0);
     share lower = nothing();
     for (int level = 0; level <= last; level++) {
         // The surfaces of a texel may lie anywhere in its filter, not at its centre, where they are tested.
@@ -202,12 +215,14 @@ OPACITY hidden(receiver r, vec2 aside, float side, float least, int last) {
         // The first level serves kernels from nothing to its filter's width.
         vec2 center = r.center + (level > 0 ? 1.0 : 0.5) * filter_widths[level] * aside;
         share here, upper;
-        look_up_bilinear(r, center, level, depths_of_level(r, side, least, level), side, here, upper);
+        OPACITY overlap;
+        look_up_bilinear(r, center, level, depths_of_level(r, side, least, level), side, here, upper, overlap);
         if (level > 0)
-            opacity = accumulate(opacity, blend(lower, upper));
+            opacity = add_nearer(opacity, blend(lower, upper), meeting, before);
+        meeting = min(overlap / max(here.opacity * upper.opacity, OPACITY(1e-6)), OPACITY(1.0));
         lower = here;
     }
-    return accumulate(opacity, blend(lower, nothing()));
+    return add_nearer(opacity, blend(lower, nothing()), meeting, before);
 }
 
 // The filters of one level differ from the emitter in shape and forget which of the casters they blur overlap. So the
