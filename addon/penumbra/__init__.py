@@ -39,9 +39,11 @@ def register():
     bpy.types.TOPBAR_MT_file_export.append(_menu)
     bpy.app.handlers.render_init.append(_forget_textures)
     bpy.app.handlers.render_pre.append(compositing.synchronize)
+    bpy.app.handlers.depsgraph_update_pre.append(compositing.synchronize_objects)
 
 
 def unregister():
+    bpy.app.handlers.depsgraph_update_pre.remove(compositing.synchronize_objects)
     bpy.app.handlers.render_pre.remove(compositing.synchronize)
     bpy.app.handlers.render_init.remove(_forget_textures)
     bpy.types.TOPBAR_MT_file_export.remove(_menu)

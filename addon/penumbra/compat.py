@@ -160,6 +160,12 @@ def uses_compositor(scene):
     return bool(scene.compositing_node_group) if _COMPOSITOR_IS_GROUP else scene.use_nodes
 
 
+def shares_compositor(scene):
+    """Whether what is changed in its tree changes other scenes' pictures."""
+    return _COMPOSITOR_IS_GROUP and scene.compositing_node_group is not None and \
+        sum(other.compositing_node_group == scene.compositing_node_group for other in bpy.data.scenes) > 1
+
+
 def set_uses_compositor(scene, uses):
     if not _COMPOSITOR_IS_GROUP and scene.use_nodes != uses:
         scene.use_nodes = uses

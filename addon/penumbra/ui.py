@@ -254,7 +254,7 @@ class PENUMBRA_PT_composite(Panel):
         column = self.layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
-        has_shadows = compositing.shadow_scene(context.scene) is not None
+        has_shadows = compositing.is_set_up(context.scene)
         operator = compositing.PENUMBRA_OT_composite_remove if has_shadows else compositing.PENUMBRA_OT_composite
         column.operator(operator.bl_idname)
         if has_shadows:

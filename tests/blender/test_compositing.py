@@ -4,7 +4,7 @@
 import bpy
 
 from composite import CompositeMixin
-from harness import SceneTest
+from harness import SceneTest, add_cube
 
 from penumbra import compat, compositing
 
@@ -62,3 +62,73 @@ class Composite(CompositeMixin, SceneTest):
         self.combined("smaller")
         copy = compositing.shadow_scene(self.scene)
         self.assertEqual((copy.render.resolution_x, copy.penumbra.technique, copy.frame_current), (40, 'HARD', 7))
+
+    def check_follows(self):
+        """The picture is that of a copy made now."""
+        followed = self.combined("followed")
+        bpy.ops.penumbra.composite_remove()
+        bpy.ops.penumbra.composite()
+        # Cycles' own noise is the same.
+        self.assertEqual(self.combined("anew"), followed)
+
+    def test_follows_objects(self):
+        """Objects and collections that come after the copy cast shadows too."""
+        self.scene.render.engine = 'CYCLES'
+        bpy.ops.penumbra.composite()
+        before = self.combined("before")
+        added = add_cube("Added", location=(-1.5, 0, 0.5))
+        self.assertNotEqual(self.combined("added"), before)
+        self.check_follows()
+        collection = bpy.data.collections.new("Group")
+        self.scene.collection.children.link(collection)
+        collection.objects.link(added)
+        self.scene.collection.objects.unlink(added)
+        self.check_follows()
+        self.layer.layer_collection.children["Group"].exclude = True
+        self.check_follows()
+
+    def test_follows_simplify(self):
+        self.scene.render.engine = 'CYCLES'
+        bpy.data.objects["Cube"].modifiers.new("Smooth", 'SUBSURF').render_levels = 3
+        bpy.ops.penumbra.composite()
+        self.scene.render.use_simplify, self.scene.render.simplify_subdivision_render = True, 0
+        self.check_follows()
+
+    def test_copy_deleted(self):
+        """Its counterpart still mends what is left."""
+        self.scene.render.engine = 'CYCLES'
+        alone = self.combined("alone")
+        bpy.ops.penumbra.composite()
+        bpy.data.scenes.remove(compositing.shadow_scene(self.scene))
+        self.assertIsNone(compositing.shadow_scene(self.scene))
+        bpy.ops.penumbra.composite_remove()
+        self.assertEqual(self.combined("mended"), alone)
+        self.assertEqual(bpy.ops.penumbra.composite(), {'FINISHED'})
+
+    def test_copied_scene(self):
+        """Both have shadows, and one keeps them when the other's are removed."""
+        self.scene.render.engine = 'CYCLES'
+        bpy.ops.penumbra.composite()
+        tree_is_shared = compat.compositor_tree(self.scene.copy()) == compat.compositor_tree(self.scene)
+        other = next(scene for scene in bpy.data.scenes if scene != self.scene and compositing.is_set_up(scene))
+        bpy.ops.penumbra.composite_remove()
+        self.assertFalse(compositing.is_set_up(self.scene))
+        self.assertEqual(compositing.shadow_scene(other) is None, tree_is_shared)
+
+    def test_shared_nodes(self):
+        """A node group of several scenes is not changed."""
+        self.scene.render.engine = 'CYCLES'
+        tree, _is_new = compat.ensure_compositor_tree(self.scene)
+        other = bpy.data.scenes.new("Other")
+        if not hasattr(other, 'compositing_node_group'):
+            self.skipTest("before Blender 5 each scene has nodes of its own")
+        other.compositing_node_group = tree
+        with self.assertRaisesRegex(RuntimeError, "single user"):
+            bpy.ops.penumbra.composite()
+
+    def test_view_layers(self):
+        """The copy renders one, whose shadows count."""
+        self.scene.render.engine = 'CYCLES'
+        self.scene.view_layers.new("Second")
+        bpy.ops.penumbra.composite()
+        self.assertEqual([layer.name for layer in compositing.shadow_scene(self.scene).view_layers], ["ViewLayer"])
