@@ -11,21 +11,23 @@ def of_world(world, warnings):
     owner = f"world '{name_of(world)}'"
     if nodes.output(world.node_tree, 'Volume').output is not None:
         warnings.append(f"{owner}: it is drawn without its volume")
-    return of_tree(world.node_tree, owner, warnings)
+    return of_tree(world.node_tree, owner, warnings, 'Is Diffuse Ray')
 
 
-def of_tree(tree, owner, warnings):
-    """Of node trees; one that varies over the sphere counts by its mean."""
-    color = _EmissionReader(owner, warnings).radiance(nodes.output(tree))
+def of_tree(tree, owner, warnings, ray=None):
+    """Of node trees; one that varies over the sphere counts by its mean. `ray`: the output of Light Path nodes that is
+    1; to lights Cycles says none."""
+    color = _EmissionReader(owner, warnings, ray).radiance(nodes.output(tree))
     if min(color) < 0.0:
         warnings.append(f"{owner}: its negative emission is left out")
     return [max(channel, 0.0) for channel in color]
 
 
 class _EmissionReader:
-    def __init__(self, owner, warnings):
+    def __init__(self, owner, warnings, ray):
         self.owner = owner
         self.warnings = warnings
+        self._ray = ray
         self._known = {}        # Source.key(): RGB
 
     def warn(self, text):
@@ -68,8 +70,9 @@ class _EmissionReader:
             found = sky.mean(node)
             self.warn("its sky counts by the mean colour of a clear one, without the disc of the sun")
         elif node.type == 'LIGHT_PATH' and source.output.name.startswith('Is '):
-            found = float(source.output.name == 'Is Diffuse Ray')
-            self.warn(f"node {name_of(node)}: it counts as for diffuse surfaces, for the camera too")
+            found = float(source.output.name == self._ray)
+            if self._ray:
+                self.warn(f"node {name_of(node)}: it counts as for diffuse surfaces, for the camera too")
         elif node.type == 'LIGHT_FALLOFF':
             found = self.value(source.input('Strength'), 100.0)
             if source.output.name != 'Quadratic' or values.constant(source.input('Smooth'), 0.0) != 0.0:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Materials that are others to other rays, by a Light Path node."""
+"""Materials, lamps and worlds that are others to other rays, by a Light Path node."""
 
 from material_rows import Nodes
 from rows import *
+from scene_rows import second_light
 
 
 def _mixed(stage, ray, *shaders):
@@ -13,6 +14,11 @@ def _mixed(stage, ray, *shaders):
     for kind, socket in zip(shaders, mix.inputs[1:]):
         nodes.link(nodes.add(kind).outputs[0], socket)
     stage.cube(material=nodes.surface(mix.outputs[0]))
+
+
+def _use_nodes(block):
+    block.use_nodes = True
+    return block.node_tree
 
 
 @row('materials')
@@ -31,3 +37,23 @@ def opaque_to_camera_rays(stage):
 def transparent_to_camera_rays(stage):
     """Transparent where Is Camera Ray: nothing but the shadow."""
     _mixed(stage, 'Is Camera Ray', 'BsdfDiffuse', 'BsdfTransparent')
+
+
+@row('materials')
+def lamp_by_rays(stage):
+    """A lamp as bright as Is Diffuse Ray: Cycles asks lamps without a ray, so it is dark."""
+    stage.cube()
+    tree = _use_nodes(second_light().data)
+    emission = next(node for node in tree.nodes if node.type == 'EMISSION')
+    tree.links.new(tree.nodes.new('ShaderNodeLightPath').outputs['Is Diffuse Ray'], emission.inputs['Strength'])
+
+
+@row('materials')
+def world_by_rays(stage):
+    """A world as bright as Is Diffuse Ray: ambient light."""
+    world = bpy.data.worlds.new("World")
+    tree = _use_nodes(world)
+    background = next(node for node in tree.nodes if node.type == 'BACKGROUND')
+    background.inputs['Color'].default_value = 0.3, 0.5, 0.9, 1
+    tree.links.new(tree.nodes.new('ShaderNodeLightPath').outputs['Is Diffuse Ray'], background.inputs['Strength'])
+    stage.scene.world = world
