@@ -146,7 +146,7 @@ class SceneExport:
             if self._is_cancelled():
                 raise Cancelled
             templates = self._templates[key] = LIGHT if ob.type == 'LIGHT' else \
-                list(self._make_templates(ob, self._flags(ob, parent or ob)))
+                list(self._make_templates(ob, self._flags(ob, parent)))
         if templates is LIGHT:
             self._add_light(ob, parent, instance.matrix_world)
         return templates
@@ -166,17 +166,15 @@ class SceneExport:
         return capi.Instance(mesh=mesh, name=name.encode(), flags=flags, first_slot=self._first_slot(slots),
                              slot_count=len(slots))
 
-    def _flags(self, ob, owner):
-        """Of an object and of its `owner`, the one that instances it or itself, with its collections."""
-        both = ob, owner
-        is_holdout = owner.is_holdout or owner.original.holdout_get(view_layer=self._view_layer)
-        is_indirect = not is_holdout and owner.original.indirect_only_get(view_layer=self._view_layer)
-        is_seen = not is_indirect and all(o.visible_camera for o in both)
-        return ((0 if is_seen else capi.INSTANCE_HIDDEN_FROM_CAMERA)
-                | (0 if all(o.visible_shadow for o in both) else capi.INSTANCE_NO_SHADOW)
-                | (0 if all(o.original.penumbra.receive_shadows for o in both) else capi.INSTANCE_NO_RECEIVE)
-                | (capi.INSTANCE_HOLDOUT if is_holdout else 0)
-                | (capi.INSTANCE_SHADOW_CATCHER if any(o.is_shadow_catcher for o in both) else 0))
+    def _flags(self, ob, parent):
+        """Of an object and of its `parent`, the one that instances it, or None: its collections count then."""
+        owner = parent or ob
+        flags = _switches(ob) | (_switches(parent) if parent else 0)
+        if owner.is_holdout or owner.original.holdout_get(view_layer=self._view_layer):
+            return flags | capi.INSTANCE_HOLDOUT
+        if owner.original.indirect_only_get(view_layer=self._view_layer):
+            return flags | capi.INSTANCE_HIDDEN_FROM_CAMERA
+        return flags
 
     # ---- Lights ----
 
@@ -253,6 +251,14 @@ class SceneExport:
             return
         self._owners['world'] = f"world '{name_of(world)}'"
         self.scene.world_color[:] = emission.of_world(world, self.warnings)
+
+
+def _switches(ob):
+    """What an object says of itself, and of all that it instances."""
+    return ((0 if ob.visible_camera else capi.INSTANCE_HIDDEN_FROM_CAMERA)
+            | (0 if ob.visible_shadow else capi.INSTANCE_NO_SHADOW)
+            | (0 if ob.original.penumbra.receive_shadows else capi.INSTANCE_NO_RECEIVE)
+            | (capi.INSTANCE_SHADOW_CATCHER if ob.is_shadow_catcher else 0))
 
 
 def write_capture(path, scene, settings):
