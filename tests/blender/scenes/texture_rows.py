@@ -153,7 +153,9 @@ def image_alpha_unused_data(stage):
 @row('materials')
 def image_alpha_float(stage):
     """Floats with alpha, both used: colours are divided by alpha."""
-    _decal(stage, picture(alpha=_thirds, float_buffer=True))
+    image = picture(alpha=_thirds, float_buffer=True)
+    image.alpha_mode = 'PREMUL'     # Cycles 5.2 takes those that no file has for straight otherwise, others do not
+    _decal(stage, image)
 
 
 @row('materials')
