@@ -168,9 +168,9 @@ rectangle part(rectangle whole, int index) {
 }
 
 // 2 x 2 PCF: four samples, one in each quarter and no two in a line, so that edges along the axes get four steps. For
-// the mean depth that is enough. The filter takes two in each quarter: where everything is sampled its parts are few.
-const vec2 search_points[4] = vec2[4](vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.625, 0.875), vec2(0.125, 0.625));
-const vec2 filter_points[8] =
+// the mean depth that is enough. In parts of a kernel the filter takes two in each quarter.
+const vec2 sample_points[4] = vec2[4](vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.625, 0.875), vec2(0.125, 0.625));
+const vec2 part_points[8] =
     vec2[8](vec2(0.0625, 0.0625), vec2(0.1875, 0.5625), vec2(0.3125, 0.3125), vec2(0.4375, 0.8125),
             vec2(0.5625, 0.1875), vec2(0.6875, 0.6875), vec2(0.8125, 0.4375), vec2(0.9375, 0.9375));
 
@@ -179,7 +179,7 @@ vec2 sampled(receiver r, rectangle rect) {
     vec2 sum = vec2(0.0);
     for (int i = 0; i < 4; i++) {
         float depth;
-        if (blocker_at(r, mix(rect.low, rect.high, search_points[i]), depth))
+        if (blocker_at(r, mix(rect.low, rect.high, sample_points[i]), depth))
             sum += vec2(1.0, depth);
     }
     return vec2(0.25 * sum.x, sum.y / max(sum.x, 1.0));
@@ -251,9 +251,10 @@ bool counts_own_kernels(receiver r) {
 // Share of the light that a part of a kernel hides by samples, over that of one it fills.
 float hidden_by_samples(receiver r, rectangle rect) {
     bool by_own = counts_own_kernels(r);
+    int count = p_subdivision > 1 ? 8 : 4;
     float sum = 0.0;
-    for (int i = 0; i < 8; i++) {
-        vec2 at = mix(rect.low, rect.high, filter_points[i]);
+    for (int i = 0; i < count; i++) {
+        vec2 at = mix(rect.low, rect.high, count > 4 ? part_points[i] : sample_points[i]);
         float depth;
         bool blocked = blocker_at(r, at, depth);
         vec2 own = own_kernel(r, depth), weight = max(filter_half_size / own, 1.0);
@@ -261,7 +262,7 @@ float hidden_by_samples(receiver r, rectangle rect) {
         if (blocked && (reaches || !by_own))
             sum += by_own ? weight.x * weight.y : 1.0;
     }
-    return 0.125 * sum;
+    return sum / float(count);
 }
 
 // The same where the part is as visible as the tables say, by the mean depth they hold.
