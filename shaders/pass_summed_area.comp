@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Summed-area tables of CHANNELS (1 or 2) values per texel, `vec4 summed_value(ivec3 texel)` of the included file, after
-// its `void summed_create(int layer)`. A table holds at each texel the sum of what lies left of, below and at it within
-// its tile. Stored as 32-bit integers: sums of round(value * scale) that wrap around, or with FLOATS the bits of floats.
+// Summed-area tables of CHANNELS (1 or 2) values per texel, `vec4 summed_value(ivec3 texel)` of the included file,
+// after its `void summed_create(int layer)`. A table holds at each texel the sum of what lies left of, below and at it
+// within its tile. Stored as 32-bit integers: sums of round(value * scale) that wrap around, or with FLOATS the bits
+// of floats.
 // STEP 0: tables of blocks of 64 x 64, or of smaller tiles. STEP 1, 2: larger tiles, by adding to each block what lies
 // left of it, then what lies below.
 
