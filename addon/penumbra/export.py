@@ -43,7 +43,7 @@ class SceneExport:
     """A pnb_scene and all it points to; `close` it when the library has copied it."""
 
     def __init__(self, depsgraph, use_pointers=True, kept=None, shown_in=None, is_cancelled=lambda: False):
-        """`kept`: a Kept that outlives this export; `shown_in`: only what this 3D view's local view shows;
+        """`kept`: a Kept that outlives this export; `shown_in`: only what this 3D view shows;
         `is_cancelled`: asked before each object, True raises Cancelled."""
         self.scene = capi.Scene(camera=capi.Camera())
         self.warnings = []
@@ -132,7 +132,7 @@ class SceneExport:
             self._link_lights(instances, numbers)
 
     def _is_shown(self, instance):
-        return (instance.parent or instance.object).original.visible_in_viewport_get(self._shown_in)
+        return (instance.parent or instance.object).visible_in_viewport_get(self._shown_in)
 
     def _templates_of(self, instance):
         """What is drawn of an object. Instances of geometry come as one object with changing data."""

@@ -373,9 +373,14 @@ class Turn:
 _turn = Turn()
 
 
+_KINDS = [item.identifier for item in bpy.types.SpaceView3D.bl_rna.properties
+          if item.identifier.startswith('show_object_viewport_')]
+
+
 def _visibility(space):
-    """Local views and local collections, which come and go without an update of the scene."""
-    return bool(space.local_view), space.use_local_collections
+    """Local views, local collections and hidden kinds of objects, which come and go without an update of the scene."""
+    hidden = tuple(name for name in _KINDS if not getattr(space, name))
+    return bool(space.local_view), space.use_local_collections, hidden
 
 
 def _wake():

@@ -4,8 +4,10 @@
 import bpy
 
 import display
-from harness import eevee, output, turn_off_eevee_shadows
+from harness import add_world, eevee, output, turn_off_eevee_shadows
 from window import ViewportTest, psnr
+
+from penumbra import viewport
 
 
 def to_linear(value):
@@ -78,3 +80,20 @@ class Overlay(ViewportTest):
         self.scene.penumbra.use_overlay = True
         self.assertFalse(plain == larger)
         self.assertTrue(larger == (yield from self.shown("overlay-on")))
+
+    def test_follows_engines(self):
+        """Other engines and shadings, and a world that is deleted, in any order: no exception, and the end is as the
+        beginning."""
+        self.space().shading.type = 'SOLID'
+        self.scene.penumbra.use_overlay = True
+        begin = yield from self.shown("overlay-begin")
+        add_world((0.2, 0.3, 0.4))
+        for engine in ('PENUMBRA', 'CYCLES', 'BLENDER_WORKBENCH', 'PENUMBRA'):
+            self.scene.render.engine = engine
+            for shading in ('RENDERED', 'WIREFRAME', 'SOLID'):
+                self.space().shading.type = shading
+                yield 'draw'
+            if self.scene.world:
+                bpy.data.worlds.remove(self.scene.world)
+        self.assertEqual([shown._error for shown in viewport._viewports if shown._error], [])
+        self.assertTrue(begin == (yield from self.shown("overlay-end")))

@@ -89,6 +89,22 @@ class Edits(EditTest):
         yield from self.check("redone")
         self.assertTrue(second == self.before)
 
+    def test_undo_burst(self):
+        """Many steps back without a drawing between them."""
+        self.push_undo("begin")
+        yield from self.check("undo-burst-begin")
+        first = self.before
+        for _ in range(12):
+            bpy.data.objects["Cube"].location.x += 0.1
+            self.push_undo("move")
+            yield 'draw'
+        yield from self.check("undo-burst-moved")
+        with self.in_viewport():
+            for _ in range(12):
+                bpy.ops.ed.undo()
+        yield from self.check("undo-burst-undone")
+        self.assertTrue(first == self.before)
+
     def test_shading_switch(self):
         """What happened while the viewport was drawn by another engine."""
         yield from self.check("rendered")

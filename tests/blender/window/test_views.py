@@ -152,6 +152,35 @@ class Regions(ViewportTest):
             bpy.ops.view3d.localview(frame_selected=False)
         self.assertTrue(whole == (yield from self.shown("global again")))
 
+    def test_object_types(self):
+        """By the popover of object types, for this viewport only."""
+        whole = yield from self.shown("types")
+        shown = [whole]
+        for kind in ('light', 'mesh'):
+            setattr(self.space(), 'show_object_viewport_' + kind, False)
+            shown.append((yield from self.shown(f"types without {kind}")))
+            setattr(self.space(), 'show_object_viewport_' + kind, True)
+        self.assertEqual(len({picture.rgb for picture in shown}), 2)    # without either there is nothing to see
+        self.assertTrue(whole == (yield from self.shown("types again")))
+
+    def test_local_collections(self):
+        """Collections that are hidden in one viewport."""
+        cube, group = bpy.data.objects["Cube"], bpy.data.collections.new("Group")
+        self.scene.collection.children.link(group)
+        group.objects.link(cube)
+        self.scene.collection.objects.unlink(cube)
+        whole = yield from self.shown("collections")
+        self.space().use_local_collections = True
+        self.assertTrue(whole == (yield from self.shown("local collections")))
+        with self.in_viewport():
+            bpy.ops.object.hide_collection(collection_index=1, toggle=True)
+        hidden = yield from self.shown("hidden collection")
+        self.assertFalse(whole == hidden)
+        yield from self.start_anew()
+        self.assertTrue(hidden == (yield from self.shown("hidden collection, fresh")))
+        self.space().use_local_collections = False
+        self.assertTrue(whole == (yield from self.shown("no local collections")))
+
     def test_at_rest_nothing_runs(self):
         yield from self.settle()
         self.assertFalse(bpy.app.timers.is_registered(viewport._tick))
