@@ -251,6 +251,9 @@ class SceneExport:
             return
         self._owners['world'] = f"world '{name_of(world)}'"
         self.scene.world_color[:] = emission.of_world(world, self.warnings)
+        for node in world.node_tree.nodes if world.node_tree else ():
+            if getattr(node, 'image', None):
+                self._texture_cache.watch(node.image)
 
 
 def _switches(ob):

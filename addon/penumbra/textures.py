@@ -43,10 +43,19 @@ class TextureCache:
             if state and handle:
                 self._drop(key)
                 self._kept[key] = state, handle, lines
-        if self._watches:
-            self._seen[key] = _signature(_image(*key[:2]))
+        self._note(key)
         warnings.extend(lines)
         return handle, not (state and handle)
+
+    def watch(self, image):
+        """Its changes count though it is no texture."""
+        key = (image.library and image.library.filepath, name_of(image))
+        self._used.add(key)
+        self._note(key)
+
+    def _note(self, key):
+        if self._watches:
+            self._seen[key] = _signature(_image(*key[:2]))
 
     def _state(self, image, file):
         """What the texture depends on, or None if the image is missing."""

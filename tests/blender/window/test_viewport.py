@@ -3,7 +3,7 @@
 
 import bpy
 
-from harness import add_cube, add_light, output, white_material, write_image
+from harness import add_cube, add_light, add_world, output, white_material, write_image
 from window import ViewportTest, psnr, read_picture
 
 
@@ -192,6 +192,17 @@ class Textures(EditTest):
             image.pixels.foreach_set([red, 0.6, 0.2, 1.0] * 16)
             image.update()
             yield from self.check(f"painted {red}")
+
+    def test_painted_world(self):
+        world = add_world((0.0, 0.0, 0.0))
+        node = world.node_tree.nodes.new('ShaderNodeTexEnvironment')
+        image = node.image = bpy.data.images.new("Sky", 8, 4)
+        background = next(each for each in world.node_tree.nodes if each.type == 'BACKGROUND')
+        world.node_tree.links.new(node.outputs['Color'], background.inputs['Color'])
+        for red in (0.2, 0.8):
+            image.pixels.foreach_set([red, 0.6, 0.2, 1.0] * 32)
+            image.update()
+            yield from self.check(f"painted world {red}")
 
     def test_reload(self):
         path = write_image(output("reloaded.png"), 0.2)
