@@ -82,18 +82,22 @@ class Overlay(ViewportTest):
         self.assertTrue(larger == (yield from self.shown("overlay-on")))
 
     def test_follows_engines(self):
-        """Other engines and shadings, and a world that is deleted, in any order: no exception, and the end is as the
-        beginning."""
-        self.space().shading.type = 'SOLID'
+        """Other engines and shadings, a world that is deleted, and moves while they change: no exception, and the end
+        is what an overlay shows that was not there before."""
         self.scene.penumbra.use_overlay = True
-        begin = yield from self.shown("overlay-begin")
         add_world((0.2, 0.3, 0.4))
         for engine in ('PENUMBRA', 'CYCLES', 'BLENDER_WORKBENCH', 'PENUMBRA'):
             self.scene.render.engine = engine
             for shading in ('RENDERED', 'WIREFRAME', 'SOLID'):
                 self.space().shading.type = shading
                 yield 'draw'
+                yield 'draw'
+                bpy.data.objects["Cube"].location.x += 0.05
             if self.scene.world:
                 bpy.data.worlds.remove(self.scene.world)
         self.assertEqual([shown._error for shown in viewport._viewports if shown._error], [])
-        self.assertTrue(begin == (yield from self.shown("overlay-end")))
+        end = yield from self.shown("overlay-end")
+        self.scene.penumbra.use_overlay = False
+        self.assertFalse(end == (yield from self.shown("overlay-none")))
+        self.scene.penumbra.use_overlay = True
+        self.assertTrue(end == (yield from self.shown("overlay-fresh")))

@@ -95,7 +95,9 @@ class Edits(EditTest):
         yield from self.check("undo-burst-begin")
         first = self.before
         for _ in range(12):
-            bpy.data.objects["Cube"].location.x += 0.1
+            cube = bpy.data.objects["Cube"]
+            cube.location.x += 0.1
+            cube.data.vertices[7].co.z += 0.1
             self.push_undo("move")
             yield 'draw'
         yield from self.check("undo-burst-moved")
