@@ -71,6 +71,23 @@ class Edits(EditTest):
         bpy.data.objects.remove(bpy.data.objects["Key"])
         yield from self.check("delete last lamp")
 
+    def test_light_linking(self):
+        if not hasattr(bpy.data.objects["Key"], 'light_linking'):
+            self.skipTest("this Blender has no light linking")
+        cube, linking = bpy.data.objects["Cube"], bpy.data.objects["Key"].light_linking
+        yield from self.check("links-begin")
+        linking.receiver_collection = bpy.data.collections.new("Receivers")     # while empty it changes nothing
+        linking.receiver_collection.objects.link(cube)
+        yield from self.check("links-cube")
+        linking.receiver_collection.collection_objects[0].light_linking.link_state = 'EXCLUDE'
+        yield from self.check("links-all-but-cube")
+        linking.receiver_collection = None
+        yield from self.check("links-gone")
+        linking.blocker_collection = bpy.data.collections.new("Blockers")
+        linking.blocker_collection.objects.link(cube)
+        linking.blocker_collection.collection_objects[0].light_linking.link_state = 'EXCLUDE'
+        yield from self.check("links-no-shadow")
+
     def test_undo(self):
         self.push_undo("begin")
         yield from self.check("undo-first")
