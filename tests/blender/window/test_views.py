@@ -5,7 +5,7 @@ import bpy
 import mathutils
 from bpy_extras.view3d_utils import location_3d_to_region_2d
 
-from harness import ADDON, add_camera, add_light, add_world
+from harness import ADDON, add_light, add_world
 from window import ViewportTest, psnr, read_picture
 
 from penumbra import capi, draw, view, viewport
@@ -69,18 +69,28 @@ class Regions(ViewportTest):
         self.look()
 
     def test_orthographic_equals_still(self):
-        """A view from above is one of an orthographic camera; see test_equals_still for the limit."""
+        """A view from above or from the front, where the floor is a line, is one of an orthographic camera; see
+        test_equals_still for the limit."""
+        add_light("Front", 'POINT', location=(-1.0, -4.0, 2.0), energy=200.0)
         region_3d = self.region_3d()
         region_3d.view_perspective = 'ORTHO'
-        region_3d.view_rotation = 1.0, 0.0, 0.0, 0.0
-        shown = yield from self.shown("orthographic")
-        left, right, _bottom, _top = self.read_view().window
-        bpy.data.objects.remove(bpy.data.objects["Camera"])
-        add_camera(type='ORTHO', ortho_scale=right - left)
-        render = self.scene.render
-        render.resolution_x, render.resolution_y = shown.width, shown.height
+        camera = bpy.data.objects["Camera"]
+        camera.data.type = 'ORTHO'
+        camera.rotation_mode = 'QUATERNION'
         self.scene.penumbra.samples = self.scene.penumbra.viewport_samples
-        self.assertGreaterEqual(psnr(shown, read_picture(self.still("orthographic-still"))), 40.0)
+        for name, rotation, location in (("above", (1.0, 0.0, 0.0, 0.0), (0, 0, 8)),
+                                         ("front", (0.5 ** 0.5, 0.5 ** 0.5, 0.0, 0.0), (0, -8, 0))):
+            region_3d.view_rotation = camera.rotation_quaternion = rotation
+            camera.location = location
+            shown = yield from self.shown("orthographic-" + name)
+            of_cube = 3 * (shown.width * (shown.height // 2 - 20) + shown.width // 2)
+            self.assertGreater(min(shown.rgb[of_cube:of_cube + 3]), 60, f"{name}: the cube is lit")
+            left, right, _bottom, _top = self.read_view().window
+            camera.data.ortho_scale = right - left
+            render = self.scene.render
+            render.resolution_x, render.resolution_y = shown.width, shown.height
+            still = read_picture(self.still("orthographic-still-" + name))
+            self.assertGreaterEqual(psnr(shown, still), 40.0, name)
 
     def read_view(self):
         with self.in_viewport():
