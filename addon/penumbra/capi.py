@@ -27,11 +27,15 @@ PASS_BLOCKERS, PASS_PENUMBRAE, PASS_SHADOW_MAPS = 32, 64, 128
 SETTINGS_FILM_TRANSPARENT, SETTINGS_PROGRESSIVE, SETTINGS_QUICK = 1, 2, 4
 
 
+# What users can do, where the library's message only says what failed.
+_CURES = {OUT_OF_MEMORY: "Smaller shadow maps or fewer pixels need less"}
+
+
 class Error(Exception):
     """A failed library call; `result` is the pnb_result."""
 
     def __init__(self, result, message):
-        super().__init__(message)
+        super().__init__(f"{message}. {_CURES[result]}" if result in _CURES else message)
         self.result = result
 
 

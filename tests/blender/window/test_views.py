@@ -252,3 +252,15 @@ class Regions(ViewportTest):
                 self.assertIn(words, text)
         preferences.backend = before
         self.assertTrue(good == (yield from self.shown("good again")))
+
+    def test_out_of_memory(self):
+        """Shadow maps of 5 GiB, which llvmpipe refuses: the text names the cure."""
+        good = yield from self.shown("good")
+        before, self.scene.penumbra.shadow_map_size = self.scene.penumbra.shadow_map_size, 16384
+        said, status = self.record(draw, 'draw_message', 1), self.record(viewport.EngineHost, 'show_status', 1)
+        yield from self.shown("out of memory")
+        for text in (said[-1], status[-1]):
+            for words in ("Penumbra cannot draw this viewport", "16384 x 16384", "Smaller shadow maps"):
+                self.assertIn(words, text)
+        self.scene.penumbra.shadow_map_size = before
+        self.assertTrue(good == (yield from self.shown("good again")))
