@@ -361,7 +361,7 @@ static void bad_cameras(void) {
     ROW(PNB_OK, "camera: its matrix", camera->matrix[14] = INFINITY);
     ROW(PNB_OK, "camera: its matrix", FILL(camera->matrix, 0));
     ROW(PNB_OK, "camera: its matrix", camera->matrix[0] = 0);
-    ROW(PNB_OK, "camera: its matrix", camera->matrix[0] = -1);
+    ROW(PNB_OK, "", camera->matrix[0] = -1);
     ROW(PNB_OK, "", camera->matrix[0] = camera->matrix[5] = camera->matrix[10] = 1e-10f);
     ROW(PNB_OK, "", camera->matrix[14] = 0.5f); /* inside the box */
     ROW(PNB_OK, "", camera->matrix[14] = 0);
