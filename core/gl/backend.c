@@ -7,10 +7,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-/* With less, llvmpipe waits for ever for a thread it could not start, or LLVM aborts the process: both were seen with
- * up to 450 MiB. */
-#define MIN_ADDRESS_SPACE ((uint64_t)768 << 20)
-
 pnb_result backend_choose(const char *name, struct backend_choice *choice) {
     const char *source = "";
     if (!name || !name[0]) {
@@ -175,17 +171,17 @@ static uint64_t used_address_space(void) {
     return pages * (uint64_t)sysconf(_SC_PAGESIZE);
 }
 
-pnb_result backend_check_address_space(void) {
+pnb_result backend_check_address_space(uint64_t least) {
     struct rlimit limit;
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
         return PNB_OK;
     }
     uint64_t used = used_address_space();
     uint64_t left = limit.rlim_cur > used ? limit.rlim_cur - used : 0;
-    if (left < MIN_ADDRESS_SPACE) {
+    if (left < least) {
         return error_set(PNB_ERROR_OUT_OF_MEMORY,
                          "the limit on address space (ulimit -v) leaves %u MiB of memory, OpenGL needs %u",
-                         (unsigned)(left >> 20), (unsigned)(MIN_ADDRESS_SPACE >> 20));
+                         (unsigned)(left >> 20), (unsigned)(least >> 20));
     }
     return PNB_OK;
 }
@@ -193,7 +189,7 @@ pnb_result backend_check_address_space(void) {
 pnb_result backend_open(const struct backend_choice *choice, const struct context_options *options,
                         struct backend *backend, struct backend_report *report) {
     struct ladder ladder;
-    pnb_result result = backend_check_address_space();
+    pnb_result result = backend_check_address_space(ADDRESS_SPACE_TO_START);
     if (result != PNB_OK) {
         return result;
     }

@@ -64,8 +64,12 @@ struct backend_report {
     bool hardware_failed;
 };
 
-/* OUT_OF_MEMORY where drivers are known to hang or abort for lack of it. */
-pnb_result backend_check_address_space(void);
+/* What a driver needs to start, and to compile a shader: with less of the process's address space left, drivers are
+ * known to hang or to abort the process. */
+#define ADDRESS_SPACE_TO_START   ((uint64_t)768 << 20)
+#define ADDRESS_SPACE_TO_COMPILE ((uint64_t)128 << 20)
+/* OUT_OF_MEMORY if the limit on address space leaves less. */
+pnb_result backend_check_address_space(uint64_t least);
 /* Opens the first backend that works. On failure the message lists every attempt. */
 pnb_result backend_open(const struct backend_choice *choice, const struct context_options *options,
                         struct backend *backend, struct backend_report *report);

@@ -60,7 +60,7 @@ pnb_result pnb_probe_backends(pnb_backend_attempt *attempts, uint32_t capacity, 
         result = check_attempts(attempts, capacity, count);
     }
     if (result == PNB_OK) {
-        result = backend_check_address_space();
+        result = backend_check_address_space(ADDRESS_SPACE_TO_START);
     }
     struct probe probe = {.attempts = attempts, .capacity = capacity};
     pthread_t thread;
