@@ -95,10 +95,10 @@ class Viewport:
 
     def draw(self, context, depsgraph):
         self._guard(self._draw, context, depsgraph)
+        if self._picture and not self._error:
+            self._guard(self._picture.draw, context.region)
         if self._error:
             draw.draw_message(context.region, self._error)
-        elif self._picture:
-            self._picture.draw(context.region)
         self._show_status()
         if self._run is None:       # else both share the processor
             _turn.drawn = time.monotonic()

@@ -253,6 +253,21 @@ class Regions(ViewportTest):
         preferences.backend = before
         self.assertTrue(good == (yield from self.shown("good again")))
 
+    def test_error_of_drawing(self):
+        """As if the GPU's driver refused the shader."""
+        said = self.record(draw, 'draw_message', 1)
+        original = draw._get_shadow_shader
+        self.addCleanup(setattr, draw, '_get_shadow_shader', original)
+        draw._get_shadow_shader = lambda: 1 / 0
+        self.scene.penumbra.viewport_view = 'SHADOW'
+        yield from self.shown("error of drawing")
+        self.assertIn("Unexpected ZeroDivisionError", said[-1])
+        draw._get_shadow_shader = original
+        bpy.data.objects["Cube"].location.x += 0.1
+        count = len(said)
+        yield from self.shown("drawn again")
+        self.assertEqual(len(said), count)
+
     def test_out_of_memory(self):
         """Shadow maps of 5 GiB, which llvmpipe refuses: the text names the cure."""
         good = yield from self.shown("good")
