@@ -33,13 +33,14 @@ MULTIPLY, SHOW, CLASSIFY, RAMP, MAP = range(5)
 
 _shadow_shader = None
 _SHADOW_VERTEX = "void main() { gl_Position = vec4(position, 0.0, 1.0); }"
-# Premultiplied black of some alpha is a multiplication of what lies below.
+# Premultiplied black of some alpha is a multiplication of what lies below. No local has the name of a push constant,
+# which is a macro with Vulkan.
 _SHADOW_FRAGMENT = """
 vec3 ramp(float value) {
     const vec3 colors[5] = vec3[5](vec3(0.03, 0.0, 0.09), vec3(0.04, 0.1, 0.26), vec3(0.01, 0.28, 0.26),
                                    vec3(0.1, 0.55, 0.12), vec3(0.98, 0.8, 0.02));
-    float place = clamp(value, 0.0, 1.0) * 3.999;
-    return mix(colors[int(place)], colors[int(place) + 1], fract(place));
+    float band = clamp(value, 0.0, 1.0) * 3.999;
+    return mix(colors[int(band)], colors[int(band) + 1], fract(band));
 }
 
 void main() {
