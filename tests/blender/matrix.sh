@@ -4,7 +4,8 @@ set -euo pipefail
 
 help() {
     cat <<EOT
-Usage: tests/blender/matrix.sh [--only VERSION] [--scenes | --script NAME] BUILD_DIR [--window] [TEST...]
+Usage: tests/blender/matrix.sh [--only VERSION] [--scenes | --script NAME] BUILD_DIR [--window | --vulkan]
+       [TEST...]
 Runs the tests of this folder in three Blenders: the system's, and those of Debian trixie (4.3) and sid (5.2) in roots
 of their own, made with debootstrap from the mirror that apt uses and kept in BUILD_DIR/matrix, or in the folder that
 PENUMBRA_CACHE names. A root takes about 2 GB; delete it to make it anew. Needs root. The last line counts all tests.
@@ -15,6 +16,7 @@ PENUMBRA_CACHE names. A root takes about 2 GB; delete it to make it anew. Needs 
   --script NAME    instead of the tests, runs soak or scale
   TEST             a module, class or method such as test_render.Sizes
   --window         only tests that need a window; TEST then is one of them
+  --vulkan         as --window, with Blender's Vulkan back end; not in Blender 3.4
 EOT
 }
 
@@ -98,7 +100,7 @@ make_root() {
         chmod +x "$root/usr/sbin/policy-rc.d" &&
         ln -sf ../proc/self/mounts "$root/etc/mtab" &&
         in_root "$root" apt-get -q install -y --no-install-recommends blender python3 python3-cattr python3-requests \
-            libgl1 libegl1 libegl-mesa0 libgl1-mesa-dri xvfb xauth &&
+            libgl1 libegl1 libegl-mesa0 libgl1-mesa-dri mesa-vulkan-drivers xvfb xauth &&
         in_root "$root" apt-get clean &&
         mv "$root" "$cache/$suite"
 }

@@ -1,15 +1,19 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# run.sh BUILD_DIR [--window] [TEST...]: installs the add-on's zip into an empty Blender profile and runs the tests
-# inside Blender, without a window and then, those of window/, in one on a display of its own. TEST is a module, class
-# or method such as test_render.Border; after --window one of window/, such as test_viewport.Edits. BLENDER names the
-# program, TEST_SCRIPT another script to run with the arguments.
+# run.sh BUILD_DIR [--window | --vulkan] [TEST...]: installs the add-on's zip into an empty Blender profile and runs the
+# tests inside Blender, without a window and then, those of window/, in one on a display of its own. TEST is a module,
+# class or method such as test_render.Border; after --window one of window/, such as test_viewport.Edits. --vulkan is
+# --window with Blender's Vulkan back end, from Blender 4.3 on. BLENDER names the program, TEST_SCRIPT another script to
+# run with the arguments.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 build=$(CDPATH= cd -- "$1" && pwd)
 shift
-window=no
-[ "${1-}" != --window ] || { window=only; shift; }
+window=no backend=
+case ${1-} in
+--window) window=only; shift ;;
+--vulkan) window=only backend=VULKAN; shift ;;
+esac
 [ $# -gt 0 ] || [ $window = only ] || window=too
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -44,9 +48,10 @@ if [ $window != no ]; then
     mkdir "$work/display"
     width=640 height=480
     [ "${1-}" != latency ] || { width=960; height=540; }
-    export TEST_DISPLAY="$work/display"
+    export TEST_DISPLAY="$work/display" TEST_BACKEND=$backend
     xvfb-run -a -s "-screen 0 ${width}x${height}x24 -nocursor -fbdir $work/display" "$blender" \
-        --factory-startup -p 0 0 $width $height --python "$here/window/run_tests.py" -- "$@"
+        --factory-startup ${backend:+--gpu-backend vulkan} \
+        -p 0 0 $width $height --python "$here/window/run_tests.py" -- "$@"
     [ "$(cat "$work/output/window-status")" = 0 ] || status=1
 fi
 exit $status

@@ -11,6 +11,7 @@ import unittest
 
 import addon_utils
 import bpy
+import gpu
 
 ADDON = os.environ['TEST_ADDON']
 FOLDER = os.path.dirname(os.path.abspath(__file__))
@@ -54,7 +55,7 @@ def run_all(tests):
             yield 'draw'
         passed += problem is None
         failed += problem is not None and not problem.startswith("skipped")
-    print(f"Blender {bpy.app.version_string}")
+    print(f"Blender {bpy.app.version_string}, {gpu.platform.backend_type_get()}, {gpu.platform.renderer_get()}")
     print(f"{passed} passed, {failed} failed", flush=True)
     with open(os.path.join(os.environ['TEST_OUTPUT'], 'window-status'), 'w', encoding='ascii') as file:
         file.write('0' if passed and not failed else '1')
@@ -64,6 +65,8 @@ def main():
     names = sys.argv[sys.argv.index('--') + 1:] if '--' in sys.argv else []
     if addon_utils.enable(ADDON, default_set=True) is None:
         sys.exit("the add-on cannot be enabled")
+    if os.environ['TEST_BACKEND'] not in {'', gpu.platform.backend_type_get()}:
+        sys.exit(f"Blender draws with {gpu.platform.backend_type_get()}")   # falls back without an error
     sys.modules['penumbra'] = sys.modules[ADDON]
     bpy.context.preferences.view.show_splash = False
     loader = unittest.defaultTestLoader

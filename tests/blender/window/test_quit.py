@@ -5,6 +5,7 @@ import os
 import subprocess
 
 import bpy
+import gpu
 
 from harness import ADDON, output
 from window import ViewportTest
@@ -39,7 +40,8 @@ class Quit(ViewportTest):
         path = output("quit.py")
         with open(path, 'w', encoding='ascii') as file:
             file.write(SCRIPT.format(still=still))
-        command = [bpy.app.binary_path, '--factory-startup', '-p', '0', '0', '640', '480', '--addons', ADDON,
+        vulkan = ['--gpu-backend', 'vulkan'] if gpu.platform.backend_type_get() == 'VULKAN' else []
+        command = [bpy.app.binary_path, '--factory-startup', *vulkan, '-p', '0', '0', '640', '480', '--addons', ADDON,
                    '--python-exit-code', '1', '--python', path]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=600, check=False,
                               env=os.environ)
