@@ -133,10 +133,10 @@ bool kept_take_maps(struct frame *frame, struct frame_light *light) {
 bool kept_give_maps(struct frame *frame, struct frame_light *light) {
     struct kept *kept = &frame->renderer->kept;
     const uint32_t index = (uint32_t)(light - frame->lights);
-    if (!is_quick(frame) || !light->shadow_map.id)
+    if (!is_quick(frame))
         return false;
-    drop_maps(kept, frame->gl, index);
-    if (kept->map_bytes + light_maps_bytes(light) > MOST_MAP_BYTES)
+    drop_maps(kept, frame->gl, index); /* even if this picture needs none: it may be long until one does again */
+    if (!light->shadow_map.id || kept->map_bytes + light_maps_bytes(light) > MOST_MAP_BYTES)
         return false;
     struct kept_light *now = &kept->lights[index];
     now->key = maps_key(frame, light);

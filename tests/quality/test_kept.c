@@ -198,10 +198,29 @@ static void others_are_not_touched(void) {
     test_scene_destroy(&test);
 }
 
+/* Maps of a light that casts no shadow for now would be memory held for nothing. */
+static void unused_maps_are_dropped(void) {
+    struct test_scene *test = quality_scene("box", TEST_LIGHT_RECTANGLE, 0, NAN);
+    struct shot shot;
+    shot_init(&shot, test, "PCSS");
+    struct render shadowed = take(&shot, PNB_SETTINGS_QUICK);
+    shot.light.flags |= PNB_LIGHT_NO_SHADOW;
+    struct render unshadowed = take(&shot, PNB_SETTINGS_QUICK);
+    shot.light.flags &= ~(uint32_t)PNB_LIGHT_NO_SHADOW;
+    struct render again = take(&shot, PNB_SETTINGS_QUICK);
+    CHECK(!has_pass(&unshadowed, "Shadow map") && has_pass(&again, "Shadow map"));
+    CHECK(images_equal(&shadowed, &again));
+    struct render *const all[] = {&shadowed, &unshadowed, &again};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        render_free(all[i]);
+    test_scene_destroy(&test);
+}
+
 int main(void) {
     quality_open();
     changes_are_seen();
     techniques_take_turns();
     others_are_not_touched();
+    unused_maps_are_dropped();
     return quality_close();
 }
