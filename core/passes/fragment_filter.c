@@ -81,7 +81,7 @@ static pnb_result merge_level(struct frame *frame, const struct fragment_level *
     pnb_result result = program_use(&frame->renderer->programs, &desc, &program);
     if (result != PNB_OK)
         return result;
-    fragment_lists_bind(gl, program, lists);
+    fragment_lists_bind(frame, program, lists);
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, frame->renderer->cursor_buffer);
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, 2 * sizeof *cursor, cursor, GL_STREAM_READ);
     gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, frame->renderer->cursor_buffer);

@@ -13,8 +13,10 @@ uint64_t fragment_size(const struct scene *scene) {
     return scene->colored ? 12 : 8;
 }
 
-void fragment_lists_bind(const struct gl *gl, GLuint program, const struct fragment_lists *lists) {
+void fragment_lists_bind(struct frame *frame, GLuint program, const struct fragment_lists *lists) {
     static const GLuint blocks[GL_BUFFER_BLOCKS] = {3, 6, 7, 0};
+    const struct gl *gl = frame->gl;
+    frame->binds_lists = true;
     gl_buffer_bind(gl, &lists->heads, 2);
     program_set_int(gl, program, "fragment_block_shift", gl_buffer_bind_split(gl, &lists->fragments, blocks));
 }
@@ -41,7 +43,7 @@ static pnb_result use_programs(struct frame *frame, const struct light_views *vi
         pnb_result result = program_use(&frame->renderer->programs, &desc, &programs[special]);
         if (result != PNB_OK)
             return result;
-        fragment_lists_bind(gl, programs[special], lists);
+        fragment_lists_bind(frame, programs[special], lists);
         program_set_mat4(gl, programs[special], "projection", (const float *)clip);
         program_set_vec2(gl, programs[special], "depth_planes", (const float[2]){view->near_depth, view->far_depth});
         program_set_vec4(gl, programs[special], "front", views->front);
@@ -102,7 +104,7 @@ static pnb_result dispatch(struct frame *frame, const char *name, GLuint program
     pnb_result result = pass_begin(frame, name);
     if (result != PNB_OK)
         return result;
-    fragment_lists_bind(gl, program, lists);
+    fragment_lists_bind(frame, program, lists);
     gl->Uniform1ui(gl->GetUniformLocation(program, "head_count"), heads);
     const uint32_t groups = (heads + per_group - 1) / per_group;
     gl->DispatchCompute(groups < MOST_GROUPS ? groups : MOST_GROUPS, (groups + MOST_GROUPS - 1) / MOST_GROUPS, 1);
@@ -178,4 +180,49 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
         (result = draw_views(frame, views, true, choice, map, lists)) != PNB_OK)
         return result;
     return sort(frame, views, choice, (uint32_t)heads, lists);
+}
+
+/* ---- Lists that are freed ---- */
+
+#define PLACES 8 /* pass_fragments_forget: as many as any OpenGL has */
+
+/* The cursor at every place. */
+static pnb_result use_in_place_of_lists(struct frame *frame, const struct program_desc *desc) {
+    const struct gl *gl = frame->gl;
+    const GLuint cursor = frame->renderer->cursor_buffer;
+    const uint32_t zero = 0;
+    GLuint program;
+    pnb_result result = program_use(&frame->renderer->programs, desc, &program);
+    if (result != PNB_OK)
+        return result;
+    gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, cursor);
+    gl->BufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, &zero, GL_STREAM_READ);
+    for (GLuint i = 0; i < PLACES; i++)
+        gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, cursor);
+    return PNB_OK;
+}
+
+/* A driver holds the memory of deleted buffers until the same stage has others in their places: with Mesa, lists of
+ * 319 MiB stayed for ever, since no other shader has so many. */
+pnb_result fragment_lists_forget(struct frame *frame) {
+    static const struct program_desc draw = {.vertex = "pass_screen.vert", .fragment = "pass_fragments_forget.frag"};
+    static const struct program_desc dispatch_one = {.compute = "pass_fragments_forget.comp"};
+    const struct gl *gl = frame->gl;
+    struct gl_texture pixel = {0};
+    const struct gl_target target = {.colors = {&pixel}, .color_count = 1};
+    pnb_result result;
+    if ((result = gl_texture_ensure(gl, &pixel, GL_R32F, 1, 1, 0, 1)) == PNB_OK &&
+        (result = gl_target_bind(gl, frame->renderer->framebuffer, &target)) == PNB_OK &&
+        (result = use_in_place_of_lists(frame, &draw)) == PNB_OK) {
+        gl->Disable(GL_DEPTH_TEST);
+        gl->Disable(GL_BLEND);
+        draw_screen(frame->renderer);
+        result = use_in_place_of_lists(frame, &dispatch_one);
+    }
+    if (result == PNB_OK) {
+        gl->DispatchCompute(1, 1, 1);
+        result = gl_check(gl, "fragment lists");
+    }
+    gl_texture_free(gl, &pixel);
+    return result;
 }

@@ -96,8 +96,10 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
 /* The define that tells shaders how opacity is accumulated. */
 const char *accumulation_define(int accumulation);
 /* Gives the current program the lists. */
-void fragment_lists_bind(const struct gl *gl, GLuint program, const struct fragment_lists *lists);
+void fragment_lists_bind(struct frame *frame, GLuint program, const struct fragment_lists *lists);
 void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists);
+/* After a job that has bound lists: makes the driver let go of them, once they are freed. */
+pnb_result fragment_lists_forget(struct frame *frame);
 /* fragment_filter.c: lists of a map of so many texels per side -> further levels of them. */
 struct fragment_filter {
     int level_count;       /* at most, with the lists themselves */

@@ -96,6 +96,7 @@ struct frame {
     int width, height;     /* of the crop */
     uint32_t sample;       /* anti-aliasing sample being drawn */
     uint32_t light;        /* light being drawn */
+    bool binds_lists;      /* fragment lists, which the driver must let go of afterwards */
     bool reuses;           /* samples use the key sample's irradiance where they can, reuse.c */
     vec4 key_window;       /* camera.window of the key sample */
     uint32_t sums_samples; /* in the sums, with the one being drawn */

@@ -337,6 +337,10 @@ pnb_result renderer_run(struct renderer *renderer, struct pnb_job *job) {
     for (uint32_t i = 0; i < MAX_LIGHTS; i++)
         light_maps_free(frame->gl, &frame->lights[i]);
     kept_end(frame, result == PNB_OK);
+    if (frame->binds_lists) {
+        const pnb_result forgotten = fragment_lists_forget(frame);
+        result = result == PNB_OK ? forgotten : result;
+    }
     pnb_result timing = timer_collect(&renderer->timer, job);
     receivers_free(&frame->receivers);
     memory_free(frame->casters);

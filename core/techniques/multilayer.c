@@ -233,7 +233,7 @@ static void multilayer_bind(struct frame *frame, const struct frame_light *light
     cut_emitter(light, parts);
     gl->Uniform2iv(gl->GetUniformLocation(program, "parts"), 1, parts);
     program_set_int(gl, program, "level_count", (int)lists->level_count);
-    fragment_lists_bind(gl, program, lists);
+    fragment_lists_bind(frame, program, lists);
 }
 
 const struct technique technique_multilayer = {

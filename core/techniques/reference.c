@@ -98,7 +98,7 @@ static pnb_result add_sample(struct frame *frame, const struct frame_light *ligh
     if (views->count > 0)
         gl_texture_bind(gl, &maps->opaque, 3);
     if (maps->translucent.count > 0)
-        fragment_lists_bind(gl, program, &maps->translucent);
+        fragment_lists_bind(frame, program, &maps->translucent);
     program_set_int(gl, program, "shadow_map", 3);
     program_set_vec4(gl, program, "emitter_normal", normal);
     program_set_int(gl, program, "uniform_weights", light->parameters[WEIGHTS] > 0.0);

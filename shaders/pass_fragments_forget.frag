@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Takes all places of buffers, so that the driver lets go of those it had there (fragment_lists_forget).
+
+layout(std430, binding = 0) buffer place_block {
+    uint value;
+} places[8];
+
+layout(location = 0) out float out_value;
+
+void main() {
+    for (int i = 0; i < 8; i++)
+        places[i].value = 0u;
+    out_value = 0.0;
+}
