@@ -62,11 +62,12 @@ class RampPicture(ShadowPicture):
     unit = " m"
 
     def make_texture(self, job, pixels):
-        self._largest = max(max(pixels), 1e-9)
+        self._largest = max(pixels)
         return draw.make_shadow_texture(job.width, job.height, pixels, channels=1)
 
     def describe(self, run):
-        return f"{run.wanted.image.title}: 0 to {self._largest:.3g}{self.unit}"
+        range_ = f"0 to {self._largest:.3g}{self.unit}" if self._largest > 0.0 else "no blocker"
+        return f"{run.wanted.image.title}: {range_}"
 
     def draw(self, region):
         draw.draw_shadow(self.texture, self.size, self.place(region), self.mode, (self._largest, 0.0, 0.0, 1.0))
