@@ -58,7 +58,7 @@ def _property(info):
         return BoolProperty(default=info.default_value != 0.0, **common)
     if info.type == capi.ENUM:
         names = [info.items[index].decode() for index in range(info.item_count)]
-        items = [(name, name.replace('_', ' ').capitalize(), '', index) for index, name in enumerate(names)]
+        items = [(name, name.replace('_', ' ').title(), '', index) for index, name in enumerate(names)]
         return EnumProperty(items=items, default=names[int(info.default_value)], **common)
     if info.type == capi.INT:
         return IntProperty(default=int(info.default_value), min=int(info.minimum), max=int(info.maximum), **common)
