@@ -36,6 +36,13 @@ OMITTED_INPUTS = {
         ("sheen", 'Sheen Weight' if BLENDER_4 else 'Sheen'), ("coat", 'Coat Weight' if BLENDER_4 else 'Clearcoat')),
 }
 
+# Settings that panels show where there are such.
+HAS_LIGHT_TEMPERATURE = 'use_temperature' in bpy.types.Light.bl_rna.properties
+LIGHT_POWER = tuple(name for name in ('energy', 'exposure', 'normalize')
+                    if name in bpy.types.PointLight.bl_rna.properties)
+VIEW_LAYER_OVERRIDES = tuple(name for name in ('material_override', 'world_override')
+                             if name in bpy.types.ViewLayer.bl_rna.properties)
+
 # Panels of other engines that fit this one too.
 ADOPTED_PANELS = ('EEVEE_MATERIAL_PT_context_material', 'EEVEE_MATERIAL_PT_surface', 'EEVEE_WORLD_PT_surface')
 
@@ -140,6 +147,20 @@ def casts_opaque_shadow(material):
     """Transparency can be left out of shadows: a setting of Cycles, since 4.2 of the material."""
     return not all(getattr(owner, 'use_transparent_shadow', True)
                    for owner in (material, getattr(material, 'cycles', None)))
+
+
+def draw_material_settings(column, material):
+    """In the panel: what the functions above read."""
+    if hasattr(material, 'shadow_method'):
+        column.prop(material, 'use_backface_culling')
+        column.prop(material, 'shadow_method')
+        if material.shadow_method == 'CLIP':
+            column.prop(material, 'alpha_threshold')
+        return
+    sub = column.column(heading="Backface Culling")
+    sub.prop(material, 'use_backface_culling', text="Camera")
+    sub.prop(material, 'use_backface_culling_shadow', text="Shadow")
+    column.prop(material, 'use_transparent_shadow')
 
 
 def view_layer_overrides(view_layer):

@@ -10,9 +10,15 @@ from . import compat, compositing, presets, props, report, statistics
 
 ENGINE = 'PENUMBRA'
 
-# Blender's panels that show settings we have our own panels for, or do not have.
+# Blender's panels that fit in another place: the panel to be within, or ''.
+_MOVED = {'DATA_PT_spot': 'PENUMBRA_PT_light',
+          'RENDER_PT_eevee_performance_compositor': 'PENUMBRA_PT_performance',
+          'RENDER_PT_simplify': '',     # it would come first
+          'RENDER_PT_simplify_viewport': 'PENUMBRA_PT_simplify', 'RENDER_PT_simplify_render': 'PENUMBRA_PT_simplify',
+          'RENDER_PT_simplify_greasepencil': 'PENUMBRA_PT_simplify'}
+# Those that show settings we have our own panels for, or do not have.
 _EXCLUDED = {'DATA_PT_light', 'DATA_PT_area', 'DATA_PT_falloff_curve', 'DATA_PT_preview', 'NODE_DATA_PT_light',
-             'VIEWLAYER_PT_filter', 'VIEWLAYER_PT_layer_passes'}
+             'EEVEE_MATERIAL_PT_viewport_settings', 'VIEWLAYER_PT_filter', 'VIEWLAYER_PT_layer_passes', *_MOVED}
 
 
 class _EnginePanel:
@@ -24,9 +30,10 @@ class _EnginePanel:
     def poll(cls, context):
         return context.engine in cls.COMPAT_ENGINES
 
-    def _column(self):
+    def _column(self, animated=False):
+        """As Blender's panels, those of scenes and view layers do not tell what is animated."""
         self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
+        self.layout.use_property_decorate = animated
         return self.layout.column()
 
 
@@ -171,6 +178,29 @@ class PENUMBRA_PT_passes(_EnginePanel, Panel):
         column.prop(view_layer.penumbra, 'use_pass_light_shadows')
 
 
+class PENUMBRA_PT_override(_EnginePanel, Panel):
+    bl_label = "Override"
+    bl_context = 'view_layer'
+    bl_options = {'DEFAULT_CLOSED'}
+
+    def draw(self, context):
+        column = self._column()
+        for name in compat.VIEW_LAYER_OVERRIDES:
+            column.prop(context.view_layer, name)
+
+
+class PENUMBRA_PT_material(_EnginePanel, Panel):
+    bl_label = "Settings"
+    bl_context = 'material'
+
+    @classmethod
+    def poll(cls, context):
+        return context.material and not context.material.grease_pencil and super().poll(context)
+
+    def draw(self, context):
+        compat.draw_material_settings(self._column(), context.material)
+
+
 class PENUMBRA_PT_light(_EnginePanel, Panel):
     bl_label = "Light"
     bl_context = 'data'
@@ -182,21 +212,38 @@ class PENUMBRA_PT_light(_EnginePanel, Panel):
     def draw(self, context):
         light = context.light
         self.layout.row().prop(light, 'type', expand=True)
-        column = self._column()
-        column.prop(light, 'color')
-        column.prop(light, 'energy')
+        column = self._column(animated=True)
+        self._draw_color(column, light)
+        column.separator()
+        for name in compat.LIGHT_POWER:
+            column.prop(light, name)
+        column.separator()
         if light.type == 'AREA':
             column.prop(light, 'shape')
             two_sided = light.shape in {'RECTANGLE', 'ELLIPSE'}
-            column.prop(light, 'size', text="Size X" if two_sided else "Size")
+            sub = column.column(align=True)
+            sub.prop(light, 'size', text="Size X" if two_sided else "Size")
             if two_sided:
-                column.prop(light, 'size_y', text="Y")
+                sub.prop(light, 'size_y', text="Y")
             column.prop(light, 'spread')
         elif light.type == 'SUN':
             column.prop(light, 'angle')
         else:
             column.prop(light, 'shadow_soft_size', text="Radius")
         column.prop(light, 'use_shadow', text="Cast Shadow")
+
+    def _draw_color(self, column, light):
+        if not compat.HAS_LIGHT_TEMPERATURE:
+            column.prop(light, 'color')
+            return
+        row = column.row(align=True, heading="Temperature")
+        row.use_property_decorate = False
+        row.prop(light, 'use_temperature', text="")
+        sub = row.row()
+        sub.active = light.use_temperature
+        sub.prop(light, 'temperature', text="")
+        row.prop_decorator(light, 'temperature')
+        column.prop(light, 'color', text="Tint" if light.use_temperature else "Color")
 
 
 class PENUMBRA_PT_light_shadow(_EnginePanel, Panel):
@@ -212,11 +259,12 @@ class PENUMBRA_PT_light_shadow(_EnginePanel, Panel):
 
     def draw(self, context):
         options = context.light.penumbra
-        column = self._column()
-        column.prop(options, 'shadow_color')
-        column.prop(options, 'shadow_map_size')
+        column = self._column(animated=True)
+        column.prop(options, 'shadow_color', text="Color")
+        column.prop(options, 'shadow_map_size', text="Map Size")
         column.prop(options, 'technique')
         if options.technique not in {props.AS_SCENE, context.scene.penumbra.technique}:
+            column.use_property_decorate = False
             _draw_parameters(column, context, options.technique)
             _paragraph(column, "All lights of this technique share its parameters.", context)
 
@@ -232,7 +280,7 @@ class PENUMBRA_PT_object_visibility(_EnginePanel, Panel):
         return super().poll(context) and context.object.type not in {'LIGHT', 'CAMERA', 'LIGHT_PROBE', 'SPEAKER'}
 
     def draw(self, context):
-        column = self._column()
+        column = self._column(animated=True)
         column.prop(context.object, 'visible_camera', text="Camera")
         column.prop(context.object, 'visible_shadow', text="Shadow")
         column.prop(context.object.penumbra, 'receive_shadows')
@@ -262,9 +310,12 @@ class PENUMBRA_PT_composite(Panel):
             column.prop(context.scene.penumbra, 'samples')
 
 
-CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_performance, PENUMBRA_PT_film, PENUMBRA_PT_debug,
-           PENUMBRA_PT_statistics, PENUMBRA_PT_report, PENUMBRA_PT_passes,
-           PENUMBRA_PT_light, PENUMBRA_PT_light_shadow, PENUMBRA_PT_object_visibility, PENUMBRA_PT_composite)
+CLASSES = (PENUMBRA_PT_technique, PENUMBRA_PT_sampling, PENUMBRA_PT_performance, PENUMBRA_PT_film, PENUMBRA_PT_passes,
+           PENUMBRA_PT_override, PENUMBRA_PT_material, PENUMBRA_PT_light, PENUMBRA_PT_light_shadow,
+           PENUMBRA_PT_object_visibility, PENUMBRA_PT_composite)
+# Below those that are moved.
+_LAST = PENUMBRA_PT_debug, PENUMBRA_PT_statistics, PENUMBRA_PT_report
+_moved = []
 
 
 def _adopted():
@@ -274,15 +325,30 @@ def _adopted():
             yield panel
 
 
+def _move():
+    """Panels of our own that draw what Blender's do. Not subclasses, which would replace them."""
+    for name, parent in _MOVED.items():
+        original = getattr(bpy.types, name, None)
+        if original:
+            members = {key: value for key, value in vars(original).items()
+                       if key.startswith('bl_') and key != 'bl_rna' or key in {'poll', 'draw', 'draw_header'}}
+            members.update({'COMPAT_ENGINES': {ENGINE}, '__module__': __name__})
+            if parent:
+                members['bl_parent_id'] = parent
+            _moved.append(type('PENUMBRA' + name[name.index('_PT_'):], original.__bases__, members))
+
+
 def register():
+    _move()
     for panel in _adopted():
         panel.COMPAT_ENGINES.add(ENGINE)
-    for cls in CLASSES:
+    for cls in (*CLASSES, *_moved, *_LAST):
         bpy.utils.register_class(cls)
 
 
 def unregister():
-    for cls in reversed(CLASSES):
+    for cls in reversed((*CLASSES, *_moved, *_LAST)):
         bpy.utils.unregister_class(cls)
+    _moved.clear()
     for panel in _adopted():
         panel.COMPAT_ENGINES.discard(ENGINE)

@@ -28,6 +28,7 @@ def registered():
     found |= {panel.__name__ for panel in bpy.types.Panel.__subclasses__()
               if 'PENUMBRA' in getattr(panel, 'COMPAT_ENGINES', ()) and not panel.__module__.startswith(ADDON)}
     found |= {owner.__name__ for owner in (bpy.types.Scene, bpy.types.ViewLayer) if hasattr(owner, 'penumbra')}
+    found |= {name for name in dir(bpy.types) if name.startswith('PENUMBRA_')}
     return found | {handler.__module__ for handler in bpy.app.handlers.render_init}
 
 
@@ -88,6 +89,16 @@ class Panels(unittest.TestCase):
         for kind, wanted in (('MESH', True), ('CURVE', True), ('EMPTY', True), ('LIGHT', False), ('CAMERA', False)):
             context = SimpleNamespace(engine='PENUMBRA', object=SimpleNamespace(type=kind))
             self.assertEqual(ui.PENUMBRA_PT_object_visibility.poll(context), wanted, kind)
+
+    def test_parents_are_shown(self):
+        """A panel within one of another engine is never seen."""
+        shown = {name: getattr(bpy.types, name) for name in dir(bpy.types) if '_PT_' in name}
+        shown = {name: panel for name, panel in shown.items()
+                 if 'PENUMBRA' in getattr(panel, 'COMPAT_ENGINES', {'PENUMBRA'})}
+        lost = [name for name, panel in shown.items() if getattr(panel, 'COMPAT_ENGINES', None)
+                and getattr(panel, 'bl_parent_id', '') not in {'', *shown}]
+        self.assertEqual(lost, [])
+        self.assertIn('PENUMBRA_PT_spot', shown)
 
     def test_words_are_blender_s(self):
         for owner in (bpy.types.Scene, bpy.types.Light, bpy.types.Object):
