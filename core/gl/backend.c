@@ -139,7 +139,7 @@ pnb_result backend_try(const struct candidate *candidate, const struct context_o
         backend_close(backend);
         return result;
     }
-    backend->is_software = is_software_renderer(&backend->gl);
+    backend->gl.is_software = is_software_renderer(&backend->gl);
     return PNB_OK;
 }
 

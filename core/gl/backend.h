@@ -18,7 +18,6 @@
 struct backend {
     char name[BACKEND_NAME_SIZE];
     struct gl gl;
-    bool is_software;
     gl_lookup lookup;           /* for functions beyond the table; its user is `state` */
     void (*close)(void *state); /* releases the context and frees state */
     void *state;

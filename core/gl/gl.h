@@ -7,6 +7,7 @@
 #include "../error.h"
 
 #include <GL/glcorearb.h>
+#include <stdbool.h>
 
 /* X(type, name): all are in OpenGL 4.3 core; a context that lacks one is refused. */
 #define GL_FUNCTIONS(X)                                                                                                \
@@ -122,6 +123,7 @@ struct gl {
     int32_t max_texture_size;   /* the smallest of texture, viewport and framebuffer limits */
     int32_t max_array_layers;
     int64_t max_buffer_size;    /* bytes of a shader storage block */
+    bool is_software;           /* the renderer runs on the CPU; set by backend_open */
 };
 
 /* Looks up one function by name, "glClear"; NULL if there is none. */

@@ -75,7 +75,7 @@ static void fill_info(const struct backend *backend, pnb_context_info *info) {
     gl->GetIntegerv(GL_MAJOR_VERSION, &major);
     gl->GetIntegerv(GL_MINOR_VERSION, &minor);
     *info = (pnb_context_info){.struct_size = sizeof *info,
-                               .is_software = backend->is_software,
+                               .is_software = backend->gl.is_software,
                                .gl_major = (uint32_t)major,
                                .gl_minor = (uint32_t)minor,
                                .max_texture_size = (uint32_t)gl->max_texture_size};

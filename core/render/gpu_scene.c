@@ -330,6 +330,29 @@ static bool is_same_call(const struct draw *a, const struct draw *b) {
     return a->mesh == b->mesh && a->range == b->range && a->material == b->material && a->solid == b->solid;
 }
 
+/* A software renderer keeps the triangles of a framebuffer until it is asked for their pixels. Asked before all of them
+ * have come, its other threads work beside the one that transforms vertices, and the memory for triangles is used again
+ * and again instead of much that is new to the processor, page by page. */
+#define MOST_QUEUED_INDICES 15000u
+
+/* Draws a range: in parts, where that does not change what is drawn first. */
+static void draw_range(const struct gl *gl, const struct mesh_range *range, GLsizei instances, GLuint first,
+                       uint64_t *queued) {
+    const uint32_t part = gl->is_software && instances == 1 ? MOST_QUEUED_INDICES : range->index_count;
+    for (uint32_t done = 0; done < range->index_count;) {
+        const uint32_t left = range->index_count - done, count = left < part ? left : part;
+        gl->DrawElementsInstancedBaseInstance(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT,
+                                              (const void *)((range->first_index + (uintptr_t)done) * sizeof(uint32_t)),
+                                              instances, first);
+        done += count;
+        *queued += (uint64_t)count * (uint64_t)instances;
+        if (gl->is_software && *queued >= MOST_QUEUED_INDICES) {
+            gl->Flush();
+            *queued = 0;
+        }
+    }
+}
+
 pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hidden_by, uint64_t unshadowed_by,
                           const struct draw_programs *programs) {
     const struct gl *gl = scene->gl;
@@ -347,6 +370,7 @@ pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hid
     gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)((count ? count : 1) * sizeof *scene->visible),
                    count ? scene->visible : NULL, GL_STREAM_DRAW);
     GLuint current = 0;
+    uint64_t queued = 0;
     for (uint32_t i = 0, base = 0; i < scene->draw_count;) {
         const struct draw *draw = &scene->draws[i];
         GLsizei instances = 0;
@@ -365,9 +389,7 @@ pnb_result gpu_scene_draw(struct gpu_scene *scene, const mat4 clip, uint32_t hid
         current = program;
         bind_material(gl, program, material, special, faces);
         gl->BindVertexArray(draw->mesh->vertex_array);
-        gl->DrawElementsInstancedBaseInstance(GL_TRIANGLES, (GLsizei)draw->range->index_count, GL_UNSIGNED_INT,
-                                              (const void *)(uintptr_t)(draw->range->first_index * sizeof(uint32_t)),
-                                              instances, first);
+        draw_range(gl, draw->range, instances, first, &queued);
     }
     memory_free(culled);
     return gl_check(gl, "drawing the scene");
