@@ -53,13 +53,23 @@ static struct content_key gbuffer_key(const struct frame *frame) {
     return key;
 }
 
-/* Without its colours, which no map shows. */
-static struct content_key maps_key(const struct frame *frame, const struct frame_light *light) {
-    const struct scene_light *source = light->source;
-    const int numbers[3] = {technique_index(light->technique), light->map_size, (int)(light - frame->lights)};
-    struct content_key key = frame->surfaces;
+/* What decides which maps there are. */
+static struct content_key kind_key(const struct frame_light *light) {
+    const int numbers[2] = {technique_index(light->technique), light->map_size};
+    struct content_key key = {{0, 0}};
     content_key_add(&key, numbers, sizeof numbers);
     content_key_add(&key, light->parameters, MAX_PARAMETERS * sizeof *light->parameters);
+    return key;
+}
+
+/* Without the light's colours, which no map shows. */
+static struct content_key maps_key(const struct frame *frame, const struct frame_light *light) {
+    const struct scene_light *source = light->source;
+    const struct content_key kind = kind_key(light);
+    const int number = (int)(light - frame->lights);
+    struct content_key key = frame->surfaces;
+    content_key_add(&key, &kind, sizeof kind);
+    content_key_add(&key, &number, sizeof number);
     content_key_add(&key, &source->type, offsetof(struct scene_light, emission) - offsetof(struct scene_light, type));
     content_key_add(&key, &source->size, offsetof(struct scene_light, technique) - offsetof(struct scene_light, size));
     return key;
@@ -105,6 +115,18 @@ static void drop_maps(struct kept *kept, const struct gl *gl, uint32_t light) {
     *old = (struct kept_light){0};
 }
 
+/* Maps that no longer serve are drawn over: memory for new ones would be new to the processor, page by page. */
+static void reuse_textures(struct kept *kept, const struct gl *gl, struct frame_light *light, uint32_t index) {
+    struct kept_light *old = &kept->lights[index];
+    const struct content_key kind = kind_key(light);
+    if (content_key_equal(&old->kind, &kind)) {
+        kept->map_bytes -= light_maps_bytes(&old->light);
+        light_maps_move(light, &old->light);
+        fragment_lists_free(gl, &light->lists);
+    }
+    drop_maps(kept, gl, index);
+}
+
 bool kept_take_maps(struct frame *frame, struct frame_light *light) {
     struct kept *kept = &frame->renderer->kept;
     const uint32_t index = (uint32_t)(light - frame->lights);
@@ -119,7 +141,7 @@ bool kept_take_maps(struct frame *frame, struct frame_light *light) {
     if (!same || !light_views_cover(&old->light.views, &views, light->map_size)) {
         if (same)
             light_views_loosen(&light->views);
-        drop_maps(kept, frame->gl, index);
+        reuse_textures(kept, frame->gl, light, index);
         return false;
     }
     kept->map_bytes -= light_maps_bytes(&old->light);
@@ -140,6 +162,7 @@ bool kept_give_maps(struct frame *frame, struct frame_light *light) {
         return false;
     struct kept_light *now = &kept->lights[index];
     now->key = maps_key(frame, light);
+    now->kind = kind_key(light);
     now->light.views = light->views;
     glm_vec3_copy(light->views_origin, now->light.views_origin);
     light_maps_move(&now->light, light);

@@ -9,6 +9,7 @@
 
 struct kept_light {
     struct content_key key;   /* of all that its maps show */
+    struct content_key kind;  /* of what decides which maps there are */
     struct frame_light light; /* only its views and maps */
 };
 
@@ -28,7 +29,8 @@ void kept_begin(struct frame *frame);
 void kept_end(struct frame *frame, bool complete);
 /* Whether the G-buffer is the frame's already; its receivers are then set. */
 bool kept_take_gbuffer(struct frame *frame);
-/* Whether there are maps that show what the light's views must; light and views then have them. */
+/* Whether there are maps that show what the light's views must; light and views then have them. If not, the light may
+ * have textures to draw them into. */
 bool kept_take_maps(struct frame *frame, struct frame_light *light);
 /* Whether the light's maps are kept for the next job. If not, they are left to the caller. */
 bool kept_give_maps(struct frame *frame, struct frame_light *light);
