@@ -229,15 +229,17 @@ def compositor_outputs(tree):
     return [node.inputs[0] for node in nodes]
 
 
+MULTIPLY_NODE = 'ShaderNodeMix' if _COMPOSITOR_IS_GROUP else 'CompositorNodeMixRGB'
+
+
 def new_multiply_node(tree):
     """(node, first input, second input, output)."""
+    node = tree.nodes.new(MULTIPLY_NODE)
     if _COMPOSITOR_IS_GROUP:
-        node = tree.nodes.new('ShaderNodeMix')
         node.data_type, node.blend_type = 'RGBA', 'MULTIPLY'
         sockets = {socket.identifier: socket for socket in (*node.inputs, *node.outputs)}
         sockets['Factor_Float'].default_value = 1.0
         return node, sockets['A_Color'], sockets['B_Color'], sockets['Result_Color']
-    node = tree.nodes.new('CompositorNodeMixRGB')
     node.blend_type = 'MULTIPLY'
     return node, node.inputs[1], node.inputs[2], node.outputs[0]
 

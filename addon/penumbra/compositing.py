@@ -99,7 +99,7 @@ def remove(scene):
     had_nodes, is_new = nodes[0][_MARK]
     tree = compat.compositor_tree(scene)
     for node in nodes:
-        if node.bl_idname != 'CompositorNodeRLayers':
+        if node.bl_idname == compat.MULTIPLY_NODE:
             _bypass(tree, node)
     for node in nodes:
         tree.nodes.remove(node)
@@ -114,9 +114,9 @@ def remove(scene):
 
 def _bypass(tree, multiply):
     """What fed a Multiply node feeds what it fed; a source of ours goes with it."""
-    source = compat.multiply_input(multiply).links[0].from_socket
+    sources = [link.from_socket for link in compat.multiply_input(multiply).links if _MARK not in link.from_node]
     targets = [link.to_socket for output in multiply.outputs for link in output.links]
-    if _MARK not in source.node:
+    for source in sources:
         for target in targets:
             tree.links.new(source, target)
 

@@ -45,6 +45,25 @@ class Composite(CompositeMixin, SceneTest):
         bpy.ops.penumbra.composite_remove()
         self.assertEqual(self.state(tree), before)
 
+    def test_output_removed(self):
+        """An output node that had to be made goes with the others."""
+        self.scene.render.engine = 'CYCLES'
+        tree, _is_new = compat.ensure_compositor_tree(self.scene)
+        tree.nodes.remove(compat.compositor_outputs(tree)[0].node)
+        before = self.state(tree)
+        bpy.ops.penumbra.composite()
+        bpy.ops.penumbra.composite_remove()
+        self.assertEqual(self.state(tree), before)
+
+    def test_unlinked(self):
+        """Links that the user took away in the meantime are not missed."""
+        self.scene.render.engine = 'CYCLES'
+        bpy.ops.penumbra.composite()
+        tree = compat.compositor_tree(self.scene)
+        tree.links.clear()
+        self.assertEqual(bpy.ops.penumbra.composite_remove(), {'FINISHED'})
+        self.assertFalse(compositing.is_set_up(self.scene))
+
     def state(self, tree):
         links = sorted((link.from_node.name, link.from_socket.identifier, link.to_node.name, link.to_socket.identifier)
                        for link in tree.links)
