@@ -37,12 +37,14 @@ def add(scene, view_layer):
         raise ValueError("The scene is rendered by Penumbra: its shadows are in the picture already")
     if is_set_up(scene):
         raise ValueError("The scene has composited soft shadows already")
+    if not scene.render.use_compositing:
+        raise ValueError("Compositing is off: turn it on in Output Properties > Post Processing first")
     if compat.shares_compositor(scene):
         raise ValueError("Other scenes use the same compositing nodes: make those of this scene a single user first")
     had_nodes = compat.uses_compositor(scene)
     tree, is_new = compat.ensure_compositor_tree(scene)
-    outputs = compat.compositor_outputs(tree)
     before = set(tree.nodes)
+    outputs = compat.compositor_outputs(tree)
     copy = _copy_scene(scene, view_layer)
     shadow = _layers_node(tree, copy, view_layer.name)
     for socket in outputs:

@@ -64,6 +64,13 @@ class Composite(CompositeMixin, SceneTest):
         self.assertEqual(bpy.ops.penumbra.composite_remove(), {'FINISHED'})
         self.assertFalse(compositing.is_set_up(self.scene))
 
+    def test_compositing_off(self):
+        """Where the compositor is not part of the render there would be no shadows, without a word."""
+        self.scene.render.engine = 'CYCLES'
+        self.scene.render.use_compositing = False
+        with self.assertRaisesRegex(RuntimeError, "Post Processing"):
+            bpy.ops.penumbra.composite()
+
     def state(self, tree):
         links = sorted((link.from_node.name, link.from_socket.identifier, link.to_node.name, link.to_socket.identifier)
                        for link in tree.links)
