@@ -41,6 +41,15 @@ class ShadowViewport(viewport.Viewport):
         super().__init__(host)
         self._stale = True
         self._changed = None    # see geometry.changed_data
+        self._layer = None      # what the window shows
+
+    def draw(self, context, depsgraph):
+        """Blender tells nobody but its own engines that a window shows another view layer."""
+        layer = context.scene.as_pointer(), context.view_layer.as_pointer()
+        if layer != self._layer:
+            self._layer = layer
+            self.note(None)
+        super().draw(context, depsgraph)
 
     def note(self, changed):
         """The scene changed since the last drawing."""

@@ -81,6 +81,27 @@ class Overlay(ViewportTest):
         self.assertFalse(plain == larger)
         self.assertTrue(larger == (yield from self.shown("overlay-on")))
 
+    def test_follows_view_layer(self):
+        self.space().shading.type = 'SOLID'
+        self.scene.penumbra.use_overlay = True
+        group = bpy.data.collections.new("Group")
+        self.scene.collection.children.link(group)
+        cube = bpy.data.objects["Cube"]
+        group.objects.link(cube)
+        self.scene.collection.objects.unlink(cube)
+        empty = self.scene.view_layers.new("Empty")
+        empty.layer_collection.children["Group"].exclude = True
+        before = yield from self.shown("overlay-layer")
+        window = bpy.context.window_manager.windows[0]
+        window.view_layer = empty
+        yield 'draw'
+        without = yield from self.shown("overlay-other-layer")
+        window.view_layer = self.layer
+        yield 'draw'
+        self.assertTrue(before == (yield from self.shown("overlay-first-layer")))
+        bpy.data.objects.remove(cube)
+        self.assertTrue(without == (yield from self.shown("overlay-no-cube")))
+
     def test_follows_engines(self):
         """Other engines and shadings, a world that is deleted, and moves while they change: no exception, and the end
         is what an overlay shows that was not there before."""
