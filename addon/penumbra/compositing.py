@@ -39,6 +39,9 @@ def add(scene, view_layer):
         raise ValueError("The scene has composited soft shadows already")
     if not scene.render.use_compositing:
         raise ValueError("Compositing is off: turn it on in Output Properties > Post Processing first")
+    if scene.render.use_single_layer:
+        raise ValueError("Render Single Layer is on: Blender renders no other scene for the compositor then, "
+                         "and Penumbra's shadows are made in one. Turn it off in View Layer Properties first")
     if compat.shares_compositor(scene):
         raise ValueError("Other scenes use the same compositing nodes: make those of this scene a single user first")
     had_nodes = compat.uses_compositor(scene)

@@ -152,6 +152,13 @@ class Composite(CompositeMixin, SceneTest):
         with self.assertRaisesRegex(RuntimeError, "single user"):
             bpy.ops.penumbra.composite()
 
+    def test_single_layer(self):
+        """Blender takes the other scene's last picture then, or black."""
+        self.scene.render.engine = 'CYCLES'
+        self.scene.render.use_single_layer = True
+        with self.assertRaisesRegex(RuntimeError, "Single Layer"):
+            bpy.ops.penumbra.composite()
+
     def test_view_layers(self):
         """The copy renders one, whose shadows count."""
         self.scene.render.engine = 'CYCLES'
