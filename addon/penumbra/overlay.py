@@ -3,7 +3,7 @@
 
 import bpy
 
-from . import capi, draw, geometry, pictures, viewport
+from . import capi, draw, geometry, pictures, view, viewport
 
 _regions = {}           # address of a region: its ShadowViewport
 _handler = None
@@ -63,6 +63,12 @@ class ShadowViewport(viewport.Viewport):
         changed = self._changed
         self._stale, self._changed = False, set()
         return changed
+
+    def read_view(self, context, scene):
+        """Blender's own engines draw all of a viewport, whatever its border."""
+        found = view.read(context, scene)
+        has_border = context.space_data.shading.type == 'RENDERED' and not scene.render.engine.startswith('BLENDER_')
+        return found if has_border else found._replace(border=view.WHOLE)
 
     def image_wanted(self, scene):
         return pictures.ImageWanted(capi.PASS_SHADOW, 0, OverlayPicture)

@@ -7,6 +7,10 @@ from . import capi
 from .lights import column_major
 
 
+# Left, bottom, right, top of a picture without border.
+WHOLE = 0.0, 0.0, 1.0, 1.0
+
+
 class View(NamedTuple):
     """Compared by value: two equal views show the same picture of the same scene."""
     width: int          # pixels of the region
@@ -81,13 +85,13 @@ def _border(context, scene):
     region_3d, space = context.region_data, context.space_data
     if region_3d.view_perspective == 'CAMERA':
         if not scene.render.use_border or not scene.camera or scene.camera.type != 'CAMERA':
-            return 0.0, 0.0, 1.0, 1.0
+            return WHOLE
         left, bottom, right, top = _camera_frame(region_3d, scene)
         bounds = scene.render
     else:
         if not space.use_render_border:
-            return 0.0, 0.0, 1.0, 1.0
-        left, bottom, right, top = 0.0, 0.0, 1.0, 1.0
+            return WHOLE
+        left, bottom, right, top = WHOLE
         bounds = space
     width, height = right - left, top - bottom
     border = (left + width * _bound(bounds, 'min_x'), bottom + height * _bound(bounds, 'min_y'),

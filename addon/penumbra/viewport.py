@@ -155,9 +155,8 @@ class Viewport:
     def _schedule(self, context, depsgraph):
         # A change of our settings does not update the evaluated scene.
         scene = depsgraph.scene
-        wanted = Wanted(self._version, view.read(context, depsgraph.scene_eval), settings.viewport_key(scene),
-                        self.image_wanted(scene),
-                        self._host.pixel_scale(scene))
+        wanted = Wanted(self._version, self.read_view(context, depsgraph.scene_eval), settings.viewport_key(scene),
+                        self.image_wanted(scene), self._host.pixel_scale(scene))
         if wanted != self._wanted:
             self._wanted = wanted
             self._error = ''
@@ -207,6 +206,9 @@ class Viewport:
             return
         if run.samples_taken == run.job.samples:
             self._finish(run)
+
+    def read_view(self, context, scene):
+        return view.read(context, scene)
 
     def image_wanted(self, scene):
         return pictures.wanted(scene.penumbra, self._exported.scene)

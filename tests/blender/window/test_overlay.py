@@ -102,6 +102,20 @@ class Overlay(ViewportTest):
         bpy.data.objects.remove(cube)
         self.assertTrue(without == (yield from self.shown("overlay-no-cube")))
 
+    def test_border(self):
+        """Of the render: Workbench and EEVEE draw the whole viewport all the same."""
+        self.scene.penumbra.use_overlay = True
+        for engine, shading in (('PENUMBRA', 'SOLID'), ('BLENDER_WORKBENCH', 'RENDERED')):
+            self.scene.render.engine = engine
+            self.space().shading.type = shading
+            self.scene.render.use_border = False
+            whole = yield from self.shown("overlay-whole")
+            self.scene.render.use_border = True
+            self.scene.render.border_max_x = 0.5
+            part = yield from self.shown("overlay-border")
+            outside = whole.width * 5 // 8, 0, whole.width // 4, whole.height  # of the outline that Blender draws, too
+            self.assertTrue(part.cut(*outside) == whole.cut(*outside), shading)
+
     def test_follows_engines(self):
         """Other engines and shadings, a world that is deleted, and moves while they change: no exception, and the end
         is what an overlay shows that was not there before."""
