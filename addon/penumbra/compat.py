@@ -187,6 +187,17 @@ def shares_compositor(scene):
         sum(other.compositing_node_group == scene.compositing_node_group for other in bpy.data.scenes) > 1
 
 
+# What a new tree consists of, or what shows pictures only.
+_PLAIN_NODES = {'CompositorNodeRLayers', 'CompositorNodeComposite', 'CompositorNodeViewer', 'NodeFrame', 'NodeReroute'}
+
+
+def idle_compositor_nodes(scene):
+    """Those that would change the picture if the tree, which is off, were used."""
+    if uses_compositor(scene) or not compositor_tree(scene):
+        return []
+    return [node for node in compositor_tree(scene).nodes if node.bl_idname not in _PLAIN_NODES and not node.mute]
+
+
 def set_uses_compositor(scene, uses):
     if not _COMPOSITOR_IS_GROUP and scene.use_nodes != uses:
         scene.use_nodes = uses

@@ -44,6 +44,10 @@ def add(scene, view_layer):
                          "and Penumbra's shadows are made in one. Turn it off in View Layer Properties first")
     if compat.shares_compositor(scene):
         raise ValueError("Other scenes use the same compositing nodes: make those of this scene a single user first")
+    idle = compat.idle_compositor_nodes(scene)
+    if idle:
+        raise ValueError(f"The scene's compositing nodes are off, and '{idle[0].name}' among them would change the "
+                         "picture: turn on Use Nodes in the compositor, or mute or delete them first")
     had_nodes = compat.uses_compositor(scene)
     tree, is_new = compat.ensure_compositor_tree(scene)
     before = set(tree.nodes)

@@ -152,6 +152,22 @@ class Composite(CompositeMixin, SceneTest):
         with self.assertRaisesRegex(RuntimeError, "single user"):
             bpy.ops.penumbra.composite()
 
+    def test_idle_nodes(self):
+        """Nodes that are off do not begin to work."""
+        self.scene.render.engine = 'CYCLES'
+        if hasattr(self.scene, 'compositing_node_group'):
+            self.skipTest("since Blender 5 a scene's nodes are never off")
+        tree, _is_new = compat.ensure_compositor_tree(self.scene)
+        invert = tree.nodes.new('CompositorNodeInvert')
+        invert.name = "Negative"    # its own differs between versions
+        self.scene.use_nodes = False
+        with self.assertRaisesRegex(RuntimeError, "'Negative'.*Use Nodes"):
+            bpy.ops.penumbra.composite()
+        invert.mute = True
+        bpy.ops.penumbra.composite()
+        bpy.ops.penumbra.composite_remove()
+        self.assertFalse(self.scene.use_nodes)
+
     def test_single_layer(self):
         """Blender takes the other scene's last picture then, or black."""
         self.scene.render.engine = 'CYCLES'
