@@ -4,9 +4,9 @@ layout(local_size_x = 1) in;
 
 layout(std430, binding = 0) buffer place_block {
     uint value;
-} places[8];
+} places[PLACES];
 
 void main() {
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < PLACES; i++)
         places[i].value = 0u;
 }

@@ -3,12 +3,12 @@
 
 layout(std430, binding = 0) buffer place_block {
     uint value;
-} places[8];
+} places[PLACES];
 
 layout(location = 0) out float out_value;
 
 void main() {
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < PLACES; i++)
         places[i].value = 0u;
     out_value = 0.0;
 }

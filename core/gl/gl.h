@@ -123,7 +123,7 @@ struct gl {
     int32_t max_texture_size;   /* the smallest of texture, viewport and framebuffer limits */
     int32_t max_array_layers;
     int64_t max_buffer_size;    /* bytes of a shader storage block */
-    bool is_software;           /* the renderer runs on the CPU; set by backend_open */
+    bool is_software;           /* the renderer runs on the CPU; set by backend_try */
 };
 
 /* Looks up one function by name, "glClear"; NULL if there is none. */

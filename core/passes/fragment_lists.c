@@ -184,45 +184,50 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
 
 /* ---- Lists that are freed ---- */
 
-#define PLACES 8 /* pass_fragments_forget: as many as any OpenGL has */
+#define PLACES        8 /* of storage blocks in a shader stage: OpenGL has so many at least */
+#define PLACES_DEFINE "#define PLACES 8\n"
 
-/* The cursor at every place. */
-static pnb_result use_in_place_of_lists(struct frame *frame, const struct program_desc *desc) {
+/* The cursor, one number, at every place. */
+static void bind_in_place_of_lists(struct frame *frame) {
     const struct gl *gl = frame->gl;
     const GLuint cursor = frame->renderer->cursor_buffer;
     const uint32_t zero = 0;
-    GLuint program;
-    pnb_result result = program_use(&frame->renderer->programs, desc, &program);
-    if (result != PNB_OK)
-        return result;
     gl->BindBuffer(GL_SHADER_STORAGE_BUFFER, cursor);
     gl->BufferData(GL_SHADER_STORAGE_BUFFER, sizeof zero, &zero, GL_STREAM_READ);
     for (GLuint i = 0; i < PLACES; i++)
         gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, i, cursor);
-    return PNB_OK;
+}
+
+/* Fragment shaders and compute shaders have places of their own. */
+static pnb_result take_places(struct frame *frame, const struct gl_texture *pixel) {
+    static const struct program_desc draw = {.vertex = "pass_screen.vert",
+                                             .fragment = "pass_fragments_forget.frag",
+                                             .defines = {PLACES_DEFINE}};
+    static const struct program_desc compute = {.compute = "pass_fragments_forget.comp", .defines = {PLACES_DEFINE}};
+    const struct gl *gl = frame->gl;
+    const struct gl_target target = {.colors = {pixel}, .color_count = 1};
+    GLuint program;
+    pnb_result result = gl_target_bind(gl, frame->renderer->framebuffer, &target);
+    if (result != PNB_OK || (result = program_use(&frame->renderer->programs, &draw, &program)) != PNB_OK)
+        return result;
+    gl->Disable(GL_DEPTH_TEST);
+    gl->Disable(GL_BLEND);
+    draw_screen(frame->renderer);
+    if ((result = program_use(&frame->renderer->programs, &compute, &program)) != PNB_OK)
+        return result;
+    gl->DispatchCompute(1, 1, 1);
+    return gl_check(gl, "fragment lists");
 }
 
 /* A driver holds the memory of deleted buffers until the same stage has others in their places: with Mesa, lists of
  * 319 MiB stayed for ever, since no other shader has so many. */
 pnb_result fragment_lists_forget(struct frame *frame) {
-    static const struct program_desc draw = {.vertex = "pass_screen.vert", .fragment = "pass_fragments_forget.frag"};
-    static const struct program_desc dispatch_one = {.compute = "pass_fragments_forget.comp"};
-    const struct gl *gl = frame->gl;
     struct gl_texture pixel = {0};
-    const struct gl_target target = {.colors = {&pixel}, .color_count = 1};
-    pnb_result result;
-    if ((result = gl_texture_ensure(gl, &pixel, GL_R32F, 1, 1, 0, 1)) == PNB_OK &&
-        (result = gl_target_bind(gl, frame->renderer->framebuffer, &target)) == PNB_OK &&
-        (result = use_in_place_of_lists(frame, &draw)) == PNB_OK) {
-        gl->Disable(GL_DEPTH_TEST);
-        gl->Disable(GL_BLEND);
-        draw_screen(frame->renderer);
-        result = use_in_place_of_lists(frame, &dispatch_one);
-    }
+    pnb_result result = gl_texture_ensure(frame->gl, &pixel, GL_R32F, 1, 1, 0, 1);
     if (result == PNB_OK) {
-        gl->DispatchCompute(1, 1, 1);
-        result = gl_check(gl, "fragment lists");
+        bind_in_place_of_lists(frame);
+        result = take_places(frame, &pixel);
     }
-    gl_texture_free(gl, &pixel);
+    gl_texture_free(frame->gl, &pixel);
     return result;
 }

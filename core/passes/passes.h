@@ -95,7 +95,7 @@ pnb_result pass_fragment_lists(struct frame *frame, const struct light_views *vi
                                struct fragment_lists *lists);
 /* The define that tells shaders how opacity is accumulated. */
 const char *accumulation_define(int accumulation);
-/* Gives the current program the lists. */
+/* Gives the current program the lists, which fragment_lists_forget must follow when the job ends. */
 void fragment_lists_bind(struct frame *frame, GLuint program, const struct fragment_lists *lists);
 void fragment_lists_free(const struct gl *gl, struct fragment_lists *lists);
 /* After a job that has bound lists: makes the driver let go of them, once they are freed. */
