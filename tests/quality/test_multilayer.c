@@ -156,7 +156,7 @@ static void render_layers(const char *technique, uint32_t map_size) {
 }
 
 /* Lists of a map of 2048 texels take 316 MiB here, of which a driver must hold none once another technique has drawn.
- * What shaders and allocators take on the way is 30 MiB, 47 while shaders are compiled for the first time. */
+ * What shaders and allocators take on the way is 30 to 47 MiB. */
 static void freed_lists_are_let_go(void) {
     render_layers("MULTILAYER", 256);
     render_layers("HARD", 256);
